@@ -39,14 +39,13 @@ int main(int argc, char** argv) {
   free_pad.add(shape);
   fingerpad::ContactTest test{.free_apex_mm = 13.03};
   test.threshold_per_mm = free_pad.fit().threshold_per_mm;
-  const fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
-  auto workspace = contact_of.workspace();  // nothing is allocated after this
+  fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
 
   // Every frame.
   cv::Mat1f depth_mm(frame.size());
   cv::Mat1b mask(frame.size());
   (void)depth_of(red(frame), green(frame), depth_mm, depth_workspace);
-  const fingerpad::ContactResult contact = contact_of(depth_mm, mask, workspace);
+  const fingerpad::ContactResult contact = contact_of(depth_mm, mask);
   const auto surface = fit_surface(camera, depth_mm, mask);
 
   std::printf("contact: %.1f mm^2, %.2f mm deep, center (%.2f, %.2f) mm\n", contact.area_mm2,

@@ -74,12 +74,12 @@ struct Bench {
     std::vector<double> area, center_mm;
   };
 
-  template <class Region, class Workspace, class Scenes>
-  static Errors errors_of(const Region& region, Workspace& workspace, const Scenes& scenes) {
+  template <class Region, class Scenes>
+  static Errors errors_of(Region& region, const Scenes& scenes) {
     Image<std::uint8_t> mask(rows, cols);
     Errors errors;
     for (const auto& [contact, depth] : scenes) {
-      const ContactResult r = region(depth, mask, workspace);
+      const ContactResult r = region(depth, mask);
       errors.area.push_back((r.area_mm2 - contact.area_mm2()) / contact.area_mm2());
       errors.center_mm.push_back(
           std::hypot(r.center_mm.x - contact.x_mm, r.center_mm.y - contact.y_mm));
@@ -87,23 +87,21 @@ struct Bench {
     return errors;
   }
 
-  template <class S = float, class Edge = HalfLevelEdge, class Scenes>
+  template <class S = float, class Scenes>
   void add_region(const std::string& name,
                   const Scenes& scenes,
-                  const ContactTest& test = {},
-                  const Edge& edge = {}) const {
-    using Region = ContactRegion<Edge, CameraType, S>;
+                  const ContactTest& test = {}) const {
+    using Region = ContactRegion<S>;
     const bench::Memory memory;
-    const auto region = std::make_shared<Region>(camera, rows, cols, test, edge);
-    const auto workspace = std::make_shared<typename Region::Workspace>(*region);
+    const auto region = std::make_shared<Region>(camera, rows, cols, test);
     const auto mask = std::make_shared<Image<std::uint8_t>>(rows, cols);
-    const auto errors = bench::kept([=] { return errors_of(*region, *workspace, scenes()); });
+    const auto errors = bench::kept([=] { return errors_of(*region, scenes()); });
     bench::add(
         group + "/" + name, pixels, memory.bytes(),
-        [=, from = timed] { benchmark::DoNotOptimize((*region)(from->depth, *mask, *workspace)); },
+        [=, from = timed] { benchmark::DoNotOptimize((*region)(from->depth, *mask)); },
         [=](auto& counters) {
           if constexpr (std::is_same_v<CameraType, Camera<double>>) {
-            bench::note_area_on_scenes<Region>(counters, test, edge);
+            bench::note_area_on_scenes<Region>(counters, test);
           }
           bench::note_errors(counters, "area", "share", errors().area);
           bench::note_errors(counters, "center", "mm", errors().center_mm);
@@ -145,12 +143,12 @@ struct Bench {
 
   void add_all() const {
     const auto scenes = bench::kept([this] { return varied(); });
-    const HalfLevelEdge no_gap{0};
+    const ContactTest no_gap{.touching_gap_mm = 0};
     add_published();
     add_region("default, with its gap", scenes);
-    add_region("default, no gap", scenes, {}, no_gap);
-    add_region<double>("default, no gap, double", scenes, {}, no_gap);
-    add_region<float, AtThreshold>("AtThreshold, half of the free pad", scenes);
+    add_region("default, no gap", scenes, no_gap);
+    add_region<double>("default, no gap, double", scenes, no_gap);
+    add_region("no placed edge", scenes, {.places_edge = false});
     bench::add_streaming(group, pixels);
     add_opencv();
   }

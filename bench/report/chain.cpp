@@ -16,6 +16,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "chain/event_counter.hpp"
@@ -71,7 +72,8 @@ struct Watch {
 };
 
 template <class Methods, class Options>
-auto chain_of(const Options& options) {
+auto chain_of(Options options) {
+  options.contact.places_edge = !std::is_base_of_v<chain::Lean, Methods>;
   return Fingertip<decltype(options.reference), Methods>(options);
 }
 

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "chain/pressed_frames.hpp"
@@ -85,7 +86,8 @@ const chain::PressedFrames& pressed() {
 /// The chain on pressed frames, on noise, and on pressed frames with random dots and side dots.
 template <class Methods>
 std::vector<Kind> of_chain() {
-  const auto options = pressed().options();
+  auto options = pressed().options();
+  options.contact.places_edge = !std::is_same_v<Methods, chain::Lean>;
   static Fingertip<std::remove_cvref_t<decltype(options.reference)>, Methods> fingertip(options);
   static const auto frames =
       made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
@@ -128,8 +130,7 @@ std::vector<Kind> of_depth() {
 
 std::vector<Kind> of_contact_region() {
   const auto options = pressed().options();
-  static const ContactRegion<> region(options.camera, 480, 640, options.contact);
-  static auto work = region.workspace();
+  static ContactRegion<> region(options.camera, 480, 640, options.contact);
   static Image<std::uint8_t> mask(480, 640);
   const auto depths_of = [](auto depth) {
     return made<Image<float>>([&](int k, test::Random& random) {
@@ -152,7 +153,7 @@ std::vector<Kind> of_contact_region() {
                                     : pressed()[static_cast<std::size_t>(k)].depth_mm(i, j);
   });
   const auto call = [](const std::vector<Image<float>>& depths) {
-    return [&](int k) { (void)region(depths[variant(k)], mask, work); };
+    return [&](int k) { (void)region(depths[variant(k)], mask); };
   };
   return {{"a pressed pad", call(plain)},
           {"depths of noise", call(noisy)},

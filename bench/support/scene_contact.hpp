@@ -14,19 +14,18 @@
 
 namespace bench {
 
-template <class Region, class Test, class Edge>
-void note_area_on_scenes(Counters& counters, const Test& test, const Edge& edge) {
+template <class Region, class Test>
+void note_area_on_scenes(Counters& counters, const Test& test) {
   SceneFrames& frames = SceneFrames::instance();
   const test::Pad& pad = frames.pad();
-  const Region region(pad.camera, pad.rows, pad.cols, test, edge);
-  auto workspace = region.workspace();
+  Region region(pad.camera, pad.rows, pad.cols, test);
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   std::vector<double> errors;
   for (const auto& [name, step] :
        {std::pair{"press", 20}, {"tilt", 16}, {"cylinder", 10}, {"roll", 18}}) {
     for (const test::ContactRecord& r : test::contact_records({name})) {
       for (std::uint64_t seed = 1; seed <= 3 && r.step == step; ++seed) {
-        const auto found = region(frames(name, seed).measured_mm, mask, workspace);
+        const auto found = region(frames(name, seed).measured_mm, mask);
         errors.push_back(found.area_mm2 / r.area_mm2 - 1);
       }
     }

@@ -60,10 +60,9 @@ class SceneFrames {
     auto depth = test::estimate<float>(estimator_, frame).depth_mm;
     fingerpad::ContactTest test;
     test.threshold_per_mm = threshold_per_mm_;
-    const Region region(pad().camera, pad().rows, pad().cols, test);
-    auto workspace = region.workspace();
+    Region region(pad().camera, pad().rows, pad().cols, test);
     test::Image<std::uint8_t> mask(pad().rows, pad().cols);
-    (void)region(depth, mask, workspace);
+    (void)region(depth, mask);
     return {truth, frame, std::move(depth), std::move(mask)};
   }
 

@@ -16,17 +16,14 @@ namespace {
 using fingerpad::ContactResult;
 using fingerpad::ContactTest;
 
-/// A contact region with its workspace; calls from several threads are serialised.
+/// A contact region; calls from several threads are serialised.
 class Region {
-  using Method = fingerpad::ContactRegion<>;
-
  public:
   Region(const fingerpad::Camera<double>& camera,
          const Count& rows,
          const Count& cols,
          const ContactTest& test)
-      : region_(camera, count_of(rows, "rows"), count_of(cols, "cols"), test),
-        work_(region_.workspace()) {}
+      : region_(camera, count_of(rows, "rows"), count_of(cols, "cols"), test) {}
 
   py::tuple operator()(const Array& depth_mm, const Array& out) {
     auto [mask, mask_view] =
@@ -35,7 +32,7 @@ class Region {
     const ContactResult result = [&, to = mask_view] {
       const py::gil_scoped_release release;
       const std::scoped_lock lock(mutex_);
-      return region_(depth, to, work_);
+      return region_(depth, to);
     }();
     if (!result.accepted()) {
       throw py::value_error("depth_mm must have the shape (" + std::to_string(region_.rows()) +
@@ -45,8 +42,7 @@ class Region {
   }
 
  private:
-  Method region_;
-  Method::Workspace work_;
+  fingerpad::ContactRegion<> region_;
   std::mutex mutex_;
 };
 
@@ -54,10 +50,12 @@ class Region {
 
 void bind_contact(py::module_& module) {
   bind_options<ContactTest>(module, "ContactTest",
-                            "The test for contact; see contact/contact_test.hpp.")
+                            "The test for contact; see contact/contact_region.hpp.")
       .def_readwrite("threshold_per_mm", &ContactTest::threshold_per_mm)
       .def_readwrite("free_apex_mm", &ContactTest::free_apex_mm)
-      .def_readwrite("min_region_px", &ContactTest::min_region_px);
+      .def_readwrite("min_region_px", &ContactTest::min_region_px)
+      .def_readwrite("places_edge", &ContactTest::places_edge)
+      .def_readwrite("touching_gap_mm", &ContactTest::touching_gap_mm);
   py::class_<ContactResult>(module, "ContactResult", "The contact of a frame.")
       .def_property_readonly("ok", &ContactResult::ok)
       .def_property_readonly("status",

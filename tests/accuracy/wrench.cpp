@@ -395,11 +395,9 @@ class Rendered {
       depth =
           test::estimate<float>(estimator_, scene_.frame(truth, 100 + f.number, noise)).depth_mm;
     }
-    const ContactRegion<HalfLevelEdge, Camera<double>> region(pad.camera, pad.rows, pad.cols,
-                                                              test_);
-    auto workspace = region.workspace();
+    ContactRegion<> region(pad.camera, pad.rows, pad.cols, test_);
     Image<std::uint8_t> mask(pad.rows, pad.cols);
-    (void)region(depth, mask, workspace);
+    (void)region(depth, mask);
     auto map = heights_.map();
     REQUIRE(heights_(depth, mask, map));
     return made_.emplace(key, map).first->second;

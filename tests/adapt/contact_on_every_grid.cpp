@@ -37,19 +37,16 @@ template <class T>
 using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Case {
-  using Region = ContactRegion<HalfLevelEdge, OrthographicCamera<double>>;
   Image<float> depth;
-  Region region;
-  Region::Workspace workspace;
+  ContactRegion<> region;
   Image<std::uint8_t> mask{rows_of_map, cols_of_map};
   ContactResult result;
 
   Case()
       : depth(test::depths_of<float>(camera(), test::RoundFilm({}), rows_of_map, cols_of_map)),
-        region(camera(), rows_of_map, cols_of_map, {.ring = {5}}),
-        workspace(region.workspace()) {
+        region(camera(), rows_of_map, cols_of_map, {.ring = {5}}) {
     depth(20, 20) = static_cast<float>(test::nan);
-    result = region(depth, mask, workspace);
+    result = region(depth, mask);
     REQUIRE(result.contact_px > 900);
   }
   static OrthographicCamera<double> camera() {
@@ -59,7 +56,7 @@ struct Case {
   template <class Depth>
   bool reads(const Depth& from) {
     Image<std::uint8_t> out(rows_of_map, cols_of_map, 3);
-    const ContactResult r = region(from, out, workspace);
+    const ContactResult r = region(from, out);
     return r.ok() && out.cells == mask.cells && r.area_mm2 == result.area_mm2 &&
            r.depth_mm == result.depth_mm && r.unknown_px == result.unknown_px;
   }
@@ -72,7 +69,7 @@ struct Case {
   bool writes(Mask&& to) {
     const auto view = as_view(to);
     using Cell = cell_t<Mask>;
-    if (!region(depth, to, workspace).ok()) {
+    if (!region(depth, to).ok()) {
       return false;
     }
     for (Index i = 0; i < rows_of_map; ++i) {

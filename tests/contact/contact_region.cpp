@@ -34,15 +34,11 @@ struct Found {
   Image<Touch> mask;
 };
 
-template <class Edge = HalfLevelEdge, class S, class CameraType>
-Found find(const CameraType& camera,
-           const Image<S>& depth,
-           const ContactTest& test = {},
-           const Edge& edge = {}) {
-  const ContactRegion<Edge, CameraType, S> region(camera, depth.rows(), depth.cols(), test, edge);
-  auto workspace = region.workspace();
+template <class S, class CameraType>
+Found find(const CameraType& camera, const Image<S>& depth, const ContactTest& test = {}) {
+  ContactRegion<S> region(camera, depth.rows(), depth.cols(), test);
   Found found{{}, Image<Touch>(depth.rows(), depth.cols(), Touch::unknown)};
-  found.result = region(depth, found.mask, workspace);
+  found.result = region(depth, found.mask);
   REQUIRE(found.result.accepted());
   return found;
 }
@@ -51,6 +47,14 @@ ContactTest with_ring(Index radius_px, Index min_region_px = 200) {
   ContactTest test;
   test.min_region_px = min_region_px;
   test.ring.radius_px = static_cast<double>(radius_px);
+  return test;
+}
+ContactTest at_threshold(ContactTest test) {
+  test.places_edge = false;
+  return test;
+}
+ContactTest with_gap(ContactTest test, double gap_mm) {
+  test.touching_gap_mm = gap_mm;
   return test;
 }
 
@@ -69,8 +73,6 @@ Index pixels_for(double radius_mm, Index ring_px, double pitch_mm = 0.08) {
   return 2 * static_cast<Index>(radius_mm / pitch_mm + 3.2 * static_cast<double>(ring_px)) + 1;
 }
 
-constexpr HalfLevelEdge no_gap{0};
-
 }  // namespace
 
 TEST_CASE("a round contact is found where it is", "[contact_region]") {
@@ -85,7 +87,7 @@ TEST_CASE("a round contact is found where it is", "[contact_region]") {
   const auto check = [](const auto& camera, const RoundFilm& film, Index ring_px, double share) {
     const Index size = static_cast<Index>(2 * camera.center_x_px) + 1;
     const auto depth = depths_of<float>(camera, film, size, size);
-    const ContactResult r = find(camera, depth, with_ring(ring_px), no_gap).result;
+    const ContactResult r = find(camera, depth, with_gap(with_ring(ring_px), 0)).result;
     CHECK(r.regions == 1);
     CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(share));
     CHECK(std::hypot(r.center_mm.x - film.x_mm, r.center_mm.y - film.y_mm) < 0.05);
@@ -110,10 +112,10 @@ TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
   const auto camera = height_map(size, size, 0.16);
   const RoundFilm film({});
   const auto depth = depths_of<float>(camera, film, size, size);
-  const double edge = radius_of(find(camera, depth, with_ring(12), no_gap).result);
+  const double edge = radius_of(find(camera, depth, with_gap(with_ring(12), 0)).result);
   double before = edge;
   for (const double gap : {0.003, 0.01, 0.03}) {
-    const double radius = radius_of(find(camera, depth, with_ring(12), HalfLevelEdge{gap}).result);
+    const double radius = radius_of(find(camera, depth, with_gap(with_ring(12), gap)).result);
     CHECK(radius > before);
     const double law = std::sqrt(gap / film.free_per_mm);
     CHECK(radius - edge > 0.9 * law);
@@ -134,10 +136,10 @@ TEST_CASE("a threshold near zero erodes by a ring's radius", "[contact_region]")
       CAPTURE(radius_mm, ring_px);
       ContactTest test = with_ring(ring_px);
       test.threshold_per_mm = 1e-4;
-      const double eroded = radius_of(find<AtThreshold>(camera, depth, test).result);
+      const double eroded = radius_of(find(camera, depth, at_threshold(test)).result);
       CHECK(eroded == Approx(radius_mm - 0.9 * ring_mm).margin(0.12));
       test.threshold_per_mm = 0.025;  // half the level of the free pad: already near the edge
-      CHECK(radius_of(find<AtThreshold>(camera, depth, test).result) ==
+      CHECK(radius_of(find(camera, depth, at_threshold(test)).result) ==
             Approx(radius_mm).margin(0.15));
     }
   }
@@ -149,8 +151,8 @@ TEST_CASE("a hole stays a hole, and a slit parts the contact", "[contact_region]
   ring.hole_mm = 2.4;
   const Index size = 145;
   const auto camera = height_map(size, size, 0.16);
-  const auto annulus =
-      find(camera, depths_of<float>(camera, RoundFilm(ring), size, size), with_ring(6), no_gap);
+  const auto annulus = find(camera, depths_of<float>(camera, RoundFilm(ring), size, size),
+                            with_gap(with_ring(6), 0));
   CHECK(annulus.result.regions == 1);
   CHECK(annulus.mask(size / 2, size / 2) == Touch::none);
   CHECK(annulus.mask(size / 2, size / 2 + 29) == Touch::contact);
@@ -160,9 +162,9 @@ TEST_CASE("a hole stays a hole, and a slit parts the contact", "[contact_region]
   strip.half_mm = 6;
   for (const double slit : {0.0, 2.0}) {
     strip.slit_mm = slit;
-    const auto found =
-        find(height_map(60, size, 0.16),
-             depths_of<float>(height_map(60, size, 0.16), strip, 60, size), with_ring(6), no_gap);
+    const auto found = find(height_map(60, size, 0.16),
+                            depths_of<float>(height_map(60, size, 0.16), strip, 60, size),
+                            with_gap(with_ring(6), 0));
     CHECK(found.result.regions == (slit > 0 ? 2 : 1));
     CHECK(found.mask(30, size / 2) == (slit > 0 ? Touch::none : Touch::contact));
     // straight edges, through the middle row
@@ -183,7 +185,7 @@ TEST_CASE("curved and tilted objects", "[contact_region]") {
     const RoundFilm film(contact);
     const auto by = [&](const auto& camera, double share) {
       const auto depth = depths_of<float>(camera, film, size, size);
-      const ContactResult r = find(camera, depth, with_ring(12), no_gap).result;
+      const ContactResult r = find(camera, depth, with_gap(with_ring(12), 0)).result;
       CHECK(r.regions == 1);
       // on the plate: the area of the touching disc, times the cosine of its tilt
       CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(share));
@@ -243,17 +245,16 @@ Through small_camera(const Through&) {
   return pad_camera(60, 64, 0.32);
 }
 
-template <class Edge, class Way>
-void check_edge() {
+template <class Way>
+void check_edge(const ContactTest& test) {
   const auto camera = small_camera(typename Way::camera{});
   const auto depth = depths_of<typename Way::number>(camera, RoundFilm({}), 60, 64);
-  const auto r = find<Edge>(camera, depth, with_ring(5)).result;
+  const auto r = find(camera, depth, test).result;
   CHECK(r.regions == 1);
-  // the edge is the end of a contact of 6 mm; HalfLevelEdge adds the area within its gap
+  // the edge is the end of a contact of 6 mm; a placed edge adds the area within its gap
   const RoundFilm film({});
-  const double nearer_mm = std::is_same_v<Edge, AtThreshold>
-                               ? 0
-                               : std::sqrt(HalfLevelEdge().touching_gap_mm / film.free_per_mm);
+  const double nearer_mm =
+      test.places_edge ? std::sqrt(test.touching_gap_mm / film.free_per_mm) : 0;
   INFO("radius " << radius_of(r) << " for " << 6 + nearer_mm);
   CHECK(radius_of(r) == Approx(6 + nearer_mm).margin(0.27));  // a pixel is 0.32 mm
   CHECK(r.center_mm.x == Approx(0).margin(0.1));
@@ -263,13 +264,13 @@ void check_edge() {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("every combination of policies finds the contact",
+TEMPLATE_TEST_CASE("every camera, scalar and edge finds the contact",
                    "[contact_region]",
                    (Way<Through, float>),
                    (Way<Plan, float>),
                    (Way<Through, double>)) {
-  check_edge<AtThreshold, TestType>();
-  check_edge<HalfLevelEdge, TestType>();
+  check_edge<TestType>(at_threshold(with_ring(5)));
+  check_edge<TestType>(with_ring(5));
 }
 
 TEST_CASE("specks are dropped", "[contact_region]") {
@@ -286,7 +287,7 @@ TEST_CASE("specks are dropped", "[contact_region]") {
     }
   }
   const auto with_least = [&](Index pixels) {
-    return find<AtThreshold>(camera, depth, with_ring(5, pixels));
+    return find(camera, depth, at_threshold(with_ring(5, pixels)));
   };
   const auto all = with_least(1);
   const auto large = with_least(all.result.contact_px / 2);
@@ -306,31 +307,13 @@ TEST_CASE("the edge needs no free membrane in sight", "[contact_region]") {
   test::RoundContact contact;
   contact.radius_mm = 2.3;
   const auto depth = depths_of<float>(camera, RoundFilm(contact), 40, 40);
-  const auto found = find(camera, depth, with_ring(6), no_gap);
+  const auto found = find(camera, depth, with_gap(with_ring(6), 0));
   CHECK(found.result.regions == 1);
   CHECK(found.result.area_mm2 == Approx(contact.area_mm2()).epsilon(0.13));
   // an image entirely in contact
   const auto flat = find(camera, Image<float>(40, 40, 9.0F), with_ring(6));
   CHECK(flat.result.contact_px + flat.result.unknown_px == 1600);
   CHECK(flat.result.contact_px > 900);
-}
-
-TEST_CASE("other contacts, dropped or not, are no free membrane", "[contact_region]") {
-  // of two adjacent contacts cleaning has dropped the right one, which is no longer a seed
-  const detail::BorderedImage image{60, 120};
-  Image<double> curvature(60, 120, 0.05);
-  Image<detail::Mark> marks(60, 120, detail::Mark::free);
-  for (Index i = 20; i < 40; ++i) {
-    for (Index j = 30; j < 50; ++j) {
-      curvature(i, j) = curvature(i, j + 30) = 0;
-      marks(i, j) = detail::Mark::seed;
-    }
-  }
-  detail::OutsideLevel<double> outside(image, 6);
-  outside.measure(curvature, marks, 0.025);
-  for (Index cell = 0; cell < outside.cells(); ++cell) {
-    CHECK(outside[static_cast<std::size_t>(cell)] == Approx(0.05).epsilon(1e-12));
-  }
 }
 
 TEST_CASE("a region may take what another has lost", "[contact_region]") {
@@ -360,16 +343,15 @@ TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]
   const auto camera = height_map(60, 64, 0.32);
   auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
   depth(30, 30) = std::numeric_limits<float>::quiet_NaN();
-  const ContactRegion<HalfLevelEdge, Plan> region(camera, 60, 64, with_ring(5));
-  auto workspace = region.workspace();
+  ContactRegion<> region(camera, 60, 64, with_ring(5));
   Image<Touch> touch(60, 64);
   Image<std::uint8_t> bytes(60, 64, 3);
   Image<float> numbers(60, 64, 3.0F);
   std::array<bool, 60 * 64> flags{};
-  const auto result = region(depth, touch, workspace);
-  (void)region(depth, bytes, workspace);
-  (void)region(depth, numbers, workspace);
-  (void)region(depth, StridedView<bool>(flags.data(), 60, 64, 64), workspace);
+  const auto result = region(depth, touch);
+  (void)region(depth, bytes);
+  (void)region(depth, numbers);
+  (void)region(depth, StridedView<bool>(flags.data(), 60, 64, 64));
   for (std::size_t k = 0; k < flags.size(); ++k) {
     const bool in = touch.cells[k] == Touch::contact;
     REQUIRE(bytes.cells[k] == (in ? 255 : 0));
@@ -380,7 +362,7 @@ TEST_CASE("masks of bytes, of bool and of Touch say the same", "[contact_region]
   CHECK(count(touch, Touch::unknown) == result.unknown_px);
   CHECK(touch(30, 30) == Touch::unknown);
   // pixels without a statistic are unknown
-  const auto statistic = workspace.statistic();
+  const auto statistic = region.statistic();
   for (Index i = 0; i < 60; ++i) {
     for (Index j = 0; j < 64; ++j) {
       REQUIRE((touch(i, j) == Touch::unknown) == std::isnan(statistic(i, j)));
@@ -400,8 +382,8 @@ TEST_CASE("missing depth is never contact and reaches no farther than its ring",
     auto spoilt = depth;
     spoilt(30, 38) = bad;
     spoilt(31, 38) = bad;
-    const auto plain = find<AtThreshold>(camera, depth, with_ring(ring, 1));
-    const auto found = find<AtThreshold>(camera, spoilt, with_ring(ring, 1));
+    const auto plain = find(camera, depth, at_threshold(with_ring(ring, 1)));
+    const auto found = find(camera, spoilt, at_threshold(with_ring(ring, 1)));
     const auto edge = find(camera, spoilt, with_ring(ring));
     const auto edge_before = find(camera, depth, with_ring(ring));
     CHECK(found.mask(30, 38) == Touch::unknown);
@@ -440,7 +422,7 @@ TEST_CASE("pixels at the image's end count as much as others", "[contact_region]
   ContactTest test = with_ring(3);
   test.ring.min_direction_share = 0.01;
   const Image<double> plate(30, 41, 5.0);
-  const auto found = find<AtThreshold>(camera, plate, test);
+  const auto found = find(camera, plate, at_threshold(test));
   CHECK(found.mask(0, 20) == Touch::contact);
   CHECK(found.mask(29, 20) == Touch::contact);
   CHECK(found.mask(15, 0) == Touch::contact);
@@ -486,32 +468,26 @@ TEST_CASE("an image smaller than the ring is unknown", "[contact_region]") {
   CHECK(find(height_map(30, 40), missing, with_ring(4)).result.unknown_px == 30 * 40);
 }
 
-TEST_CASE("a grid or a workspace of another size is not accepted", "[contact_region]") {
-  using Region = ContactRegion<HalfLevelEdge, Plan>;
+TEST_CASE("a grid of another size is not accepted", "[contact_region]") {
   const auto camera = height_map(60, 64, 0.32);
-  const Region region(camera, 60, 64, with_ring(5));
-  auto workspace = region.workspace();
+  ContactRegion<> region(camera, 60, 64, with_ring(5));
   const auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
-  const auto refused = [&](const Image<float>& from, Image<std::uint8_t> to, auto& memory) {
+  const auto refused = [&](const Image<float>& from, Image<std::uint8_t> to) {
     std::fill(to.cells.begin(), to.cells.end(), std::uint8_t(7));
-    const ContactResult r = region(from, to, memory);
+    const ContactResult r = region(from, to);
     return !r.ok() && r.contact_px == 0 && r.unknown_px == 0 &&
            count(to, std::uint8_t(7)) == to.rows() * to.cols();
   };
   const Image<std::uint8_t> mask(60, 64);
-  CHECK(refused(Image<float>(60, 63), mask, workspace));
-  CHECK(refused(Image<float>(61, 64), mask, workspace));
-  CHECK(refused(depth, Image<std::uint8_t>(64, 60), workspace));
-  auto transposed = Region(camera, 64, 60, with_ring(5)).workspace();
-  CHECK(refused(depth, mask, transposed));
-  auto other_ring = Region(camera, 60, 64, with_ring(9)).workspace();
-  CHECK(refused(depth, mask, other_ring));
-  CHECK_FALSE(refused(depth, mask, workspace));
+  CHECK(refused(Image<float>(60, 63), mask));
+  CHECK(refused(Image<float>(61, 64), mask));
+  CHECK(refused(depth, Image<std::uint8_t>(64, 60)));
+  CHECK_FALSE(refused(depth, mask));
 }
 
 TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   const auto with = [](const ContactTest& test) {
-    return refusal([&] { const ContactRegion<> region({}, 60, 60, test); });
+    return refusal([&] { ContactRegion<> region({}, 60, 60, test); });
   };
   ContactTest test;
   CHECK(with(test) == "accepted");
@@ -526,26 +502,22 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   CHECK(with(with_ring(9, 0)) == "ContactTest: min_region_px = 0, must be >= 1");
   CHECK(with(with_ring(0)) == "CurvatureRing: radius_px = 0, must be in [1, 1000]");
 
-  const auto edge = [](const auto& e) {
-    using Edge = std::decay_t<decltype(e)>;
-    return refusal([&] { const ContactRegion<Edge> region({}, 60, 60, {}, e); });
-  };
   for (const double bad : {-0.01, 1.1, test::nan}) {
-    CHECK(begins_with(edge(HalfLevelEdge{bad}), "HalfLevelEdge: touching_gap_mm = "));
+    CHECK(begins_with(with(with_gap({}, bad)), "ContactTest: touching_gap_mm = "));
   }
   Camera<double> camera;
   camera.refractive_index = 0.5;
-  CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
+  CHECK(begins_with(refusal([&] { ContactRegion<> region(camera, 60, 60); }),
                     "Camera: refractive_index = 0.5"));
   camera = {};
   camera.center_y_px = -1e300;
-  CHECK(begins_with(refusal([&] { const ContactRegion<> region(camera, 60, 60); }),
+  CHECK(begins_with(refusal([&] { ContactRegion<> region(camera, 60, 60); }),
                     "ContactRegion: camera: corner of the image, mm = "));
   // a pixel without neighbours on both sides has no area
   for (const Index one : {0, 1}) {
-    CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, one, 60); }),
+    CHECK(begins_with(refusal([&] { ContactRegion<> region({}, one, 60); }),
                       "ContactRegion: rows = "));
-    CHECK(begins_with(refusal([&] { const ContactRegion<> region({}, 60, one); }),
+    CHECK(begins_with(refusal([&] { ContactRegion<> region({}, 60, one); }),
                       "ContactRegion: cols = "));
   }
 }

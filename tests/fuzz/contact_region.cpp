@@ -26,13 +26,12 @@ void try_contact(Input& in) {
   test.free_apex_mm = in.number(0, 20);
   test.ring.radius_px = static_cast<int>(in.whole(0, 25));
   test.min_region_px = in.whole(0, 300);
-  const ContactRegion<> find(camera, rows, cols, test);
-  auto work = find.workspace();
+  ContactRegion<> find(camera, rows, cols, test);
 
   const Grid<float> depth(in, rows, cols, 0, 15);
   Grid<std::uint8_t> mask(rows, cols), again(rows, cols);
-  const ContactResult contact = fuzz::frame([&] { return find(depth.view(), mask.view(), work); });
-  const ContactResult same = fuzz::frame([&] { return find(depth.view(), again.view(), work); });
+  const ContactResult contact = fuzz::frame([&] { return find(depth.view(), mask.view()); });
+  const ContactResult same = fuzz::frame([&] { return find(depth.view(), again.view()); });
   require(contact.accepted(), "a frame of the right size is accepted");
   require(mask == again && fuzz::same_bits(contact.area_mm2, same.area_mm2),
           "the same frame gives the same bits");

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Level of the edge against the mean over the ring, integrated in 50 digits.
+#include "fingerpad/contact/contact_region.hpp"
+
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "fingerpad/contact/edge_level.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 
 using namespace fingerpad;
+using detail::edge_level;
+using detail::edge_share;
 using test::Digits50;
 
 namespace test {

@@ -381,16 +381,14 @@ TEST_CASE("wild finite depths move no contact and make no negative area", "[mist
     const auto depth = test::depths_of<float>(camera, test::RoundFilm({}), 60, 64);
     ContactTest contact_test;
     contact_test.ring.radius_px = 5;
-    using CameraType = std::decay_t<decltype(camera)>;
-    const ContactRegion<HalfLevelEdge, CameraType> region(camera, 60, 64, contact_test);
-    auto workspace = region.workspace();
+    ContactRegion<> region(camera, 60, 64, contact_test);
     Image<std::uint8_t> mask(60, 64), clean(60, 64);
-    const ContactResult before = region(depth, clean, workspace);
+    const ContactResult before = region(depth, clean);
     for (const double wild : {30.0, 60.0, 99.0, 101.0, 300.0, 2000.0, 5000.0, 1e6, 1e30}) {
       for (const double sign : {1.0, -1.0}) {
         auto spoilt = depth;
         spoilt(30, 32) = static_cast<float>(sign * wild);
-        const ContactResult after = region(spoilt, mask, workspace);
+        const ContactResult after = region(spoilt, mask);
         const auto flat = fit_surface(camera, spoilt, clean);
         CAPTURE(sign * wild, after.depth_mm, before.depth_mm, after.area_mm2, before.area_mm2);
         // below 100 mm it may be a depth: it counts as one pixel of some thousand
@@ -431,7 +429,7 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
   const auto said = [](Index rows, Index cols) {
     const LazyView image(rows, cols, [](Index, Index) { return 100.0; });
     return std::array{
-        refusal([&] { const ContactRegion<> r({}, rows, cols); }),
+        refusal([&] { ContactRegion<> r({}, rows, cols); }),
         refusal([&] { const CurvatureMap<> r({}, rows, cols); }),
         refusal([&] { const PadHeights<> r(rows, cols, {}); }),
         refusal([&] { (void)fit_reference(Camera<>{}, Absorption<>{}, image, image, image); }),
@@ -467,12 +465,11 @@ TEST_CASE("a copied workspace is as good as the first", "[mistakes]") {
 
   ContactTest contact_test;
   contact_test.ring.radius_px = 3;
-  const ContactRegion<> region(pad.camera, pad.rows, pad.cols, contact_test);
-  auto region_first = region.workspace();
-  auto region_copy = region_first;
+  ContactRegion<> region(pad.camera, pad.rows, pad.cols, contact_test);
+  ContactRegion<> region_copy = region;
   Image<std::uint8_t> mask(pad.rows, pad.cols), other(pad.rows, pad.cols);
-  CHECK(region(a, mask, region_first).ok());
-  CHECK(region(a, other, region_copy).ok());
+  CHECK(region(a, mask).ok());
+  CHECK(region_copy(a, other).ok());
   CHECK(mask.cells == other.cells);
 
   NeighbourLightCompensation<> light_first({5}, 0.8F, pad.free_depths());

@@ -183,12 +183,10 @@ std::string of_region(const std::string& mistake) {
   const PressedPad pad;
   ContactTest options;
   options.ring.radius_px = 5;
-  const ContactRegion<HalfLevelEdge, OrthographicCamera<double>> region(pad.camera, size, size,
-                                                                        options);
-  auto workspace = region.workspace();
+  ContactRegion<> region(pad.camera, size, size, options);
   Image<std::uint8_t> mask(size, size);
-  const ContactResult right = region(pad.now, mask, workspace);
-  return told(region(spoilt(mistake, pad.now, pad.free), mask, workspace), right);
+  const ContactResult right = region(pad.now, mask);
+  return told(region(spoilt(mistake, pad.now, pad.free), mask), right);
 }
 
 std::string of_surface(const std::string& mistake) {

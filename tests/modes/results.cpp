@@ -57,10 +57,9 @@ void tell_depth_and_contact(Results& tell) {
   ContactTest test;
   test.ring.radius_px = 4;
   test.min_region_px = 10;
-  static const ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
-  auto memory = region.workspace();
+  static ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
-  const auto contact = region(depth, mask, memory);
+  const auto contact = region(depth, mask);
   tell("contact pixels", static_cast<double>(contact.contact_px));
   tell("contact area mm2", contact.area_mm2);
 }
@@ -97,8 +96,8 @@ void tell_images(Results& tell) {
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(free_mm.cells[k]);
   }
-  static NeighbourLightCompensation<> compensate(
-      {.radius_px = 6}, static_cast<float>(pad.camera.pitch_mm), from);
+  static NeighbourLightCompensation<> compensate({.radius_px = 6},
+                                                 static_cast<float>(pad.camera.pitch_mm), from);
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(pressed_mm.cells[k]);
   }

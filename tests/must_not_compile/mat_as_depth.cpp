@@ -5,18 +5,17 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 
-const fingerpad::ContactRegion<> contact_region(fingerpad::Camera<>(), 480, 640);
-auto workspace = contact_region.workspace();
+fingerpad::ContactRegion<> contact_region(fingerpad::Camera<>(), 480, 640);
 cv::Mat depth_map(480, 640, CV_32F), mask(480, 640, CV_8U);
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {
-  (void)contact_region(depth_map, mask, workspace);
+  (void)contact_region(depth_map, mask);
 }
 #else
 static void good_or_bad() {
   cv::Mat_<unsigned char> to(mask);
-  (void)contact_region(cv::Mat_<float>(depth_map), to, workspace);
+  (void)contact_region(cv::Mat_<float>(depth_map), to);
 }
 #endif
 int main() {

@@ -10,9 +10,8 @@ static test::ForeignImage<float> depths(64, 64);
 static test::ForeignImage<Touch> mask(64, 64);
 
 static void find_in(auto& to) {
-  const ContactRegion<> contact({}, 64, 64);
-  auto workspace = contact.workspace();
-  (void)contact(depths, to, workspace);
+  ContactRegion<> contact({}, 64, 64);
+  (void)contact(depths, to);
 }
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE

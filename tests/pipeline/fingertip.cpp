@@ -125,9 +125,6 @@ template <int Step>
 struct Sampled : DepthAndContact {
   static constexpr int sampling = Step;
 };
-struct SampledAtThreshold : Sampled<3> {
-  using Edge = fingerpad::AtThreshold;
-};
 struct EveryPixel : DepthAlone {
   static constexpr int sampling = 1;
 };
@@ -254,15 +251,16 @@ TEST_CASE("sampled frames say what whole ones do", "[chain]") {
 
 TEST_CASE("the least region in pixels counts whole samples", "[chain]") {
   auto options = frames().options();
+  options.contact.places_edge = false;
   const Inputs in = frames()[0].view();
-  TipOf<SampledAtThreshold> any(options);
+  TipOf<Sampled<3>> any(options);
   const Index samples = any(in.image, in.dots_px, 0.0).contact.contact_px;
   REQUIRE(samples > 100);
   options.contact.min_region_px = 9 * static_cast<int>(samples);
-  TipOf<SampledAtThreshold> just(options);
+  TipOf<Sampled<3>> just(options);
   CHECK(just(in.image, in.dots_px, 0.0).contact.contact_px == samples);
   ++options.contact.min_region_px;
-  TipOf<SampledAtThreshold> less(options);
+  TipOf<Sampled<3>> less(options);
   CHECK(less(in.image, in.dots_px, 0.0).contact.contact_px == 0);
 }
 

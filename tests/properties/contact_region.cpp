@@ -25,25 +25,17 @@ namespace {
 using Plan = OrthographicCamera<double>;
 constexpr double pitch_mm = 0.32;
 
-template <class Edge = AtThreshold, class CameraType = Plan, class S = double>
-using Region = ContactRegion<Edge, CameraType, S>;
-
 struct Found {
   ContactResult result;
   Image<std::uint8_t> mask;
 };
 
-template <class R, class S>
-Found find(const R& region, const Image<S>& depth, typename R::Workspace& workspace) {
+template <class S, class D>
+Found find(ContactRegion<S>& region, const Image<D>& depth) {
   Found found{{}, Image<std::uint8_t>(depth.rows(), depth.cols(), 3)};
-  found.result = region(depth, found.mask, workspace);
+  found.result = region(depth, found.mask);
   RC_ASSERT(found.result.accepted());
   return found;
-}
-template <class R, class S>
-Found find(const R& region, const Image<S>& depth) {
-  auto workspace = region.workspace();
-  return find(region, depth, workspace);
 }
 
 ContactTest any_test() {
@@ -51,6 +43,7 @@ ContactTest any_test() {
   test.min_region_px = 1;
   test.ring.radius_px = test::uniform(4, 6);
   test.threshold_per_mm = test::uniform(0.01, 0.04);
+  test.places_edge = false;
   return test;
 }
 
@@ -118,9 +111,9 @@ Plan camera_of(const Image<double>& depth) {
   return test::height_map(depth.rows(), depth.cols(), pitch_mm);
 }
 
-template <class Edge = AtThreshold>
 Found find_in(const Image<double>& depth, const ContactTest& test) {
-  return find(Region<Edge>(camera_of(depth), depth.rows(), depth.cols(), test), depth);
+  ContactRegion<double> region(camera_of(depth), depth.rows(), depth.cols(), test);
+  return find(region, depth);
 }
 
 }  // namespace
@@ -158,11 +151,11 @@ TEST_CASE("so does its edge, but for the lattice that its level is taken on", "[
     ContactTest test;
     test.ring.radius_px = test::uniform(4, 6);
     test.min_region_px = 20;
-    const Found found = find_in<HalfLevelEdge>(depth, test);
+    const Found found = find_in(depth, test);
     RC_ASSERT(found.result.regions == 1);
-    const Found rotated = find_in<HalfLevelEdge>(transposed(depth), test);
+    const Found rotated = find_in(transposed(depth), test);
     RC_ASSERT(rotated.mask.cells == transposed(found.mask).cells);
-    const Found flipped = find_in<HalfLevelEdge>(mirrored(depth), test);
+    const Found flipped = find_in(mirrored(depth), test);
     RC_ASSERT(differing(flipped.mask, mirrored(found.mask)) <= found.result.contact_px / 50);
   });
 }
@@ -170,13 +163,14 @@ TEST_CASE("so does its edge, but for the lattice that its level is taken on", "[
 TEST_CASE("only shape counts, not depth, seen from infinitely far", "[contact_region]") {
   rc::prop("all pixels as much deeper", [] {
     const auto depth = any_membrane();
-    const ContactTest test = any_test();
+    ContactTest test = any_test();
+    test.places_edge = true;
     auto deeper = depth;
     const double by = test::uniform(-8, 8);
     for (double& l : deeper.cells) {
       l += by;
     }
-    const Found a = find_in<HalfLevelEdge>(depth, test), b = find_in<HalfLevelEdge>(deeper, test);
+    const Found a = find_in(depth, test), b = find_in(deeper, test);
     RC_ASSERT(a.mask.cells == b.mask.cells);
     if (a.result.in_contact()) {
       RC_ASSERT(std::abs(a.result.depth_mm - by - b.result.depth_mm) < 1e-4);
@@ -191,17 +185,18 @@ TEST_CASE("the larger the contact, the larger the area", "[contact_region]") {
     contact.radius_mm = test::uniform(2, 4);
     contact.free_per_mm = test::uniform(0.04, 0.08);
     const auto camera = test::height_map(44, 44, pitch_mm);
-    const auto area = [&]<class Edge>(const Edge&) {
+    const auto area = [&](bool places_edge) {
       const auto depth = test::depths_of<double>(camera, RoundFilm(contact), 44, 44);
       ContactTest test;
       test.ring.radius_px = 4;
       test.min_region_px = 1;
-      return find_in<Edge>(depth, test).result.area_mm2;
+      test.places_edge = places_edge;
+      return find_in(depth, test).result.area_mm2;
     };
-    const double before[] = {area(AtThreshold{}), area(HalfLevelEdge{})};
+    const double before[] = {area(false), area(true)};
     contact.radius_mm += test::uniform(0.1, 1);
-    RC_ASSERT(area(AtThreshold{}) >= before[0]);
-    RC_ASSERT(area(HalfLevelEdge{}) >= before[1]);
+    RC_ASSERT(area(false) >= before[0]);
+    RC_ASSERT(area(true) >= before[1]);
   });
 }
 
@@ -258,13 +253,8 @@ Image<double> anything(Index rows, Index cols) {
 }
 
 template <class R>
-void check_anything(const R& region,
-                    typename R::Workspace& used,
-                    const Image<double>& depth,
-                    bool at_threshold,
-                    double threshold_per_mm,
-                    Index min_px) {
-  const Found found = find(region, depth, used);
+void check_anything(R& region, R fresh, const Image<double>& depth, const ContactTest& test) {
+  const Found found = find(region, depth);
   const ContactResult& r = found.result;
   const Index pixels = depth.rows() * depth.cols();
   const Index in = std::count(found.mask.cells.begin(), found.mask.cells.end(), 255);
@@ -280,39 +270,41 @@ void check_anything(const R& region,
     RC_ASSERT(found.mask.cells[k] == 0 || is_finite(depth.cells[k]));
   }
   // each pixel is classified by its own statistic
-  const auto statistic = used.statistic();
+  const auto statistic = region.statistic();
   Index unknown = 0;
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
       const auto k = statistic(i, j);
       unknown += is_finite(k) ? 0 : 1;
-      if (at_threshold && is_finite(k)) {
-        const bool below = static_cast<double>(k) < threshold_per_mm;
-        RC_ASSERT(found.mask(i, j) == 0 || below);                 // contact is below the threshold
-        RC_ASSERT(!below || found.mask(i, j) != 0 || min_px > 1);  // and below it is contact
+      if (!test.places_edge && is_finite(k)) {
+        const bool below = static_cast<double>(k) < test.threshold_per_mm;
+        RC_ASSERT(found.mask(i, j) == 0 || below);  // contact is below the threshold
+        RC_ASSERT(!below || found.mask(i, j) != 0 ||
+                  test.min_region_px > 1);  // and below it is contact
       }
     }
   }
   RC_ASSERT(unknown == r.unknown_px);
-  // the workspace keeps nothing of earlier frames
-  const Found fresh = find(region, depth);
-  RC_ASSERT(fresh.mask.cells == found.mask.cells);
-  RC_ASSERT(fresh.result.area_mm2 == r.area_mm2);
-  RC_ASSERT(fresh.result.regions == r.regions);
+  // nothing of earlier frames is kept
+  const Found again = find(fresh, depth);
+  RC_ASSERT(again.mask.cells == found.mask.cells);
+  RC_ASSERT(again.result.area_mm2 == r.area_mm2);
+  RC_ASSERT(again.result.regions == r.regions);
 }
 
-template <class Edge, class S, class CameraType>
-void fuzz(const CameraType& camera, Index rows, Index cols, Index min_region_px = 1) {
+template <class S, class CameraType>
+void fuzz(
+    const CameraType& camera, bool places_edge, Index rows, Index cols, Index min_region_px = 1) {
   ContactTest test;
   test.ring.radius_px = test::uniform(1, 7);
   test.ring.min_direction_share = test::uniform(0.01, 1);
   test.threshold_per_mm = test::log_uniform(1e-3, 0.03);
   test.min_region_px = min_region_px;
-  const Region<Edge, CameraType, S> region(camera, rows, cols, test);
-  auto workspace = region.workspace();
+  test.places_edge = places_edge;
+  const ContactRegion<S> fresh(camera, rows, cols, test);
+  ContactRegion<S> region = fresh;
   for (int frame = 0; frame < 3; ++frame) {
-    check_anything(region, workspace, anything(rows, cols), std::is_same_v<Edge, AtThreshold>,
-                   test.threshold_per_mm, min_region_px);
+    check_anything(region, fresh, anything(rows, cols), test);
   }
 }
 
@@ -324,9 +316,9 @@ TEST_CASE("whatever the frame, the result can be read", "[contact_region]") {
     const auto plan = test::height_map(rows, cols, pitch_mm);
     const auto through = test::pad_camera(rows, cols, pitch_mm);
     const Index specks = test::whole(1, 30);
-    fuzz<HalfLevelEdge, double>(plan, rows, cols, specks);
-    fuzz<HalfLevelEdge, float>(through, rows, cols);
-    fuzz<AtThreshold, float>(through, rows, cols);
-    fuzz<AtThreshold, double>(plan, rows, cols, specks);
+    fuzz<double>(plan, true, rows, cols, specks);
+    fuzz<float>(through, true, rows, cols);
+    fuzz<float>(through, false, rows, cols);
+    fuzz<double>(plan, false, rows, cols, specks);
   });
 }

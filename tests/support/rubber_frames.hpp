@@ -91,10 +91,9 @@ class RubberFrames {
   fingerpad::PadHeights<>::Map heights(const std::string& shape, std::uint64_t seed) const {
     const auto depth =
         estimate<float>(estimator_, scene_.frame(scene_.depth(shape), seed)).depth_mm;
-    const fingerpad::ContactRegion<> region(pad().camera, pad().rows, pad().cols, test_);
-    auto workspace = region.workspace();
+    fingerpad::ContactRegion<> region(pad().camera, pad().rows, pad().cols, test_);
     Image<std::uint8_t> mask(pad().rows, pad().cols);
-    (void)region(depth, mask, workspace);
+    (void)region(depth, mask);
     const fingerpad::PadHeights<fingerpad::Camera<double>> in_plan(pad().rows, pad().cols,
                                                                    pad().camera);
     auto map = in_plan.map();

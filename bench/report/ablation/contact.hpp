@@ -24,23 +24,22 @@
 
 namespace bench::ablation {
 
-/// A region with its workspace and mask.
-template <class Edge = fingerpad::HalfLevelEdge, class CameraType = Camera<double>>
+/// A region with its mask.
 class ContactVariant {
-  using Region = fingerpad::ContactRegion<Edge, CameraType>;
-
  public:
+  template <class CameraType>
   ContactVariant(const CameraType& camera,
                  const std::vector<Image<float>>& free_mm,
                  Index min_region_px = fingerpad::ContactTest().min_region_px,
-                 const fingerpad::CurvatureRing& ring = {})
+                 const fingerpad::CurvatureRing& ring = {},
+                 bool places_edge = true)
       : region_(camera,
                 free_mm.front().rows(),
                 free_mm.front().cols(),
                 {.threshold_per_mm = threshold(camera, free_mm, ring),
                  .ring = ring,
-                 .min_region_px = min_region_px}),
-        workspace_(region_.workspace()),
+                 .min_region_px = min_region_px,
+                 .places_edge = places_edge}),
         mask_(region_.rows(), region_.cols()) {}
 
   /// Errors of the region and of the area.
@@ -49,7 +48,7 @@ class ContactVariant {
     double area;
   };
   Wrong operator()(const Seen& seen, const Image<float>& depth_mm) {
-    const auto result = region_(depth_mm, mask_, workspace_);
+    const auto result = region_(depth_mm, mask_);
     double wrong = 0, all = 0, pad_px = 0;
     for (std::size_t k = 0; k < mask_.cells.size(); ++k) {
       const bool touches = seen.touches.cells[k] != 0;
@@ -63,9 +62,10 @@ class ContactVariant {
   }
 
   /// Processes one frame, for timing.
-  void run(const Image<float>& depth_mm) { (void)region_(depth_mm, mask_, workspace_); }
+  void run(const Image<float>& depth_mm) { (void)region_(depth_mm, mask_); }
 
  private:
+  template <class CameraType>
   static double threshold(const CameraType& camera,
                           const std::vector<Image<float>>& free_mm,
                           const fingerpad::CurvatureRing& ring) {
@@ -77,8 +77,7 @@ class ContactVariant {
     return calibration.fit({.level_share = 0.5, .sigmas = 0, .quantile = 0.5}).threshold_per_mm;
   }
 
-  Region region_;
-  typename Region::Workspace workspace_;
+  fingerpad::ContactRegion<> region_;
   Image<std::uint8_t> mask_;
 };
 
@@ -139,13 +138,13 @@ class ContactEffects {
   fingerpad::OrthographicCamera<double> from_afar_{pad_.camera.center_x_px, pad_.camera.center_y_px,
                                                    pad_.camera.pitch_mm};
 
-  ContactVariant<> all_{pad_.camera, free_};
-  ContactVariant<> one_direction_{
+  ContactVariant all_{pad_.camera, free_};
+  ContactVariant one_direction_{
       pad_.camera, free_, fingerpad::ContactTest().min_region_px, {.directions = 1}};
-  ContactVariant<fingerpad::HalfLevelEdge, fingerpad::OrthographicCamera<double>> orthographic_{
-      from_afar_, free_};
-  ContactVariant<fingerpad::AtThreshold> at_threshold_{pad_.camera, free_};
-  ContactVariant<> uncleaned_{pad_.camera, free_, 1};
+  ContactVariant orthographic_{from_afar_, free_};
+  ContactVariant at_threshold_{
+      pad_.camera, free_, fingerpad::ContactTest().min_region_px, {}, false};
+  ContactVariant uncleaned_{pad_.camera, free_, 1};
 
   static constexpr const char* of_region = "contact region";
   static constexpr const char* share = "share";
@@ -167,8 +166,8 @@ class ContactEffects {
   Effect edge_{.name = "placed edge",
                .quantity = of_region,
                .unit = share,
-               .on = "`HalfLevelEdge`",
-               .off = "`AtThreshold`"};
+               .on = "`ContactTest::places_edge`",
+               .off = "false"};
   Effect cleaning_{.name = "cleaning",
                    .quantity = of_region,
                    .unit = share,

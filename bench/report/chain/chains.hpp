@@ -25,12 +25,11 @@ struct WithLeastSquares : fingerpad::FingertipMethods {};
 struct ByDefault : fingerpad::FingertipMethods {
   using Solver = fingerpad::published::Iteration;
 };
-/// The cheapest methods for a flat contact on a pad with dark dots.
+/// The cheapest methods for a flat contact on a pad with dark dots, whose edge is not placed.
 struct Lean : ByDefault {
   static constexpr int sampling = 4;
   using Smoothing = fingerpad::AnchoredMean;
   using Inverse = fingerpad::ExponentialFree<2, 5>;
-  using Edge = fingerpad::AtThreshold;
 };
 /// The same in samples of Step x Step pixels.
 template <class Methods, int Step>

@@ -119,16 +119,14 @@ inline RegionFound default_region(const Heights& height,
     fingerpad::ContactTest test;
     test.ring.radius_px = 12;
     test.threshold_per_mm = half_of_free_per_mm;
-    const fingerpad::ContactRegion<fingerpad::HalfLevelEdge, fingerpad::OrthographicCamera<double>>
-        region(camera, depth.rows(), depth.cols(), test);
-    auto workspace = region.workspace();
-    (void)region(depth, mask, workspace);
+    fingerpad::ContactRegion<> region(camera, depth.rows(), depth.cols(), test);
+    (void)region(depth, mask);
   });
 }
 
 /// Two bars. Gaps up to the default's touching gap count as contact.
 inline void add_two_contacts(std::vector<CaseByNature>& rows) {
-  const double touching_mm = fingerpad::HalfLevelEdge().touching_gap_mm;
+  const double touching_mm = fingerpad::ContactTest().touching_gap_mm;
   const HeightMap map{.size = 220, .pitch_mm = 0.08, .within_mm = 6.5};
   for (const double apart_mm : {3.0, 2.0}) {
     const test::StripFilm film{.half_mm = 4, .slit_mm = apart_mm / 2};

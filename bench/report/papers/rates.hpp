@@ -41,10 +41,9 @@ std::string depth_rate(const Estimator& estimator, const test::Frame<std::uint8_
 }
 
 template <class Region>
-std::string region_rate(const Region& region, const test::Image<float>& depth) {
-  auto workspace = region.workspace();
+std::string region_rate(Region region, const test::Image<float>& depth) {
   test::Image<std::uint8_t> mask(depth.rows(), depth.cols());
-  return rate([&] { (void)region(depth, mask, workspace); });
+  return rate([&] { (void)region(depth, mask); });
 }
 
 template <class W>

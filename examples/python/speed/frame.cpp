@@ -60,9 +60,8 @@ int main(int argc, char** argv) {
   const fingerpad::Absorption<double> fluid;
   const auto reference = fit_reference(camera, fluid, pad_red, pad_green, shape);
   const fingerpad::DepthEstimator<> estimate(camera, fluid, reference);
-  const fingerpad::ContactRegion<> region(camera, rows, cols, {.free_apex_mm = 13.03});
+  fingerpad::ContactRegion<> region(camera, rows, cols, {.free_apex_mm = 13.03});
   auto work = estimate.workspace<std::uint8_t>();
-  auto contact_work = region.workspace();
   std::vector<float> depth_cells(shape_cells.size());
   std::vector<fingerpad::PixelStatus> statuses(shape_cells.size());
   std::vector<std::uint8_t> mask_cells(shape_cells.size());
@@ -71,7 +70,7 @@ int main(int argc, char** argv) {
   const StridedView<std::uint8_t> mask(mask_cells.data(), rows, cols, cols);
   while (std::cin.get() == '\n') {
     const double depth_s = seconds_of([&] { (void)estimate(red, green, depth, status, work); });
-    const double contact_s = seconds_of([&] { (void)region(depth, mask, contact_work); });
+    const double contact_s = seconds_of([&] { (void)region(depth, mask); });
     std::printf("%.9f %.9f %.9f\n", depth_s, contact_s, depth_s + contact_s);
     std::fflush(stdout);
   }

@@ -45,7 +45,7 @@ struct [[nodiscard]] FreePadCurvature {
   S median_error_per_mm = not_a_number<S>();
   S noise_per_mm = S(0);   ///< root mean square of sigma over the pad; 0 for a single frame
   S edge_noise_mm = S(0);  ///< standard deviation of an edge point of a flat object due to this
-                           ///< noise alone; smaller with HalfLevelEdge, which smooths
+                           ///< noise alone; smaller with a placed edge, which is smoothed
   Index pixels = 0;        ///< with a curvature in every frame
   int frames = 0;
 

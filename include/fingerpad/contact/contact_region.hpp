@@ -7,28 +7,57 @@
 // Source: Ito et al. 2011, III.B, eqs. 1-12, and the slides, contact region. Published and
 // corrected forms in docs/errata.md, E012-E018.
 //
-// Parts: the mean curvature (image/curvature.hpp), threshold and edge (contact/contact_test.hpp),
-// the level of the edge (contact/edge_level.hpp).
+// Where the mean curvature with negative ones set to 0 (image/curvature.hpp) is below a threshold,
+// there is contact; its edge is then placed where the plain mean is half way between object and
+// free membrane (contact/detail/edge.hpp).
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <string>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/contact/contact_test.hpp"
-#include "fingerpad/contact/detail/edge_finder.hpp"
-#include "fingerpad/contact/detail/region_measures.hpp"
+#include "fingerpad/contact/detail/edge.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/image/detail/pixel_box.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/image/detail/regions.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// The test for contact: a mean curvature below the threshold.
+struct ContactTest {
+  /// delta in the sources, > 0. Half the curvature of the free pad is a good choice: 1/40 per mm
+  /// for the published pad of 20 mm radius. calibrate/contact.hpp measures it.
+  double threshold_per_mm = 0.025;
+  double free_apex_mm = 13;  ///< height of the free pad, from which contact depth counts; finite
+  CurvatureRing ring = {};
+  Index min_region_px = 200;  ///< smaller regions are dropped: noise makes specks of about half a
+                              ///< ring's radius. >= 1; 1 drops none
+  /// False: contact ends where the threshold does, as published. A ring that reaches beyond the
+  /// edge includes free membrane, so the region is off by up to a ring's radius on all sides; it is
+  /// faster, where only the place of the contact matters.
+  bool places_edge = true;
+  /// Membrane nearer than this to the object counts as touched, in [0, 1]. This moves the placed
+  /// edge outward by sqrt(gap / jump of the mean curvature), about 0.5 mm at the default; a depth
+  /// map from 8-bit frames cannot distinguish such a gap from contact.
+  double touching_gap_mm = 0.02;
+};
+
+/// Says which value is out of range; "" if none is.
+inline std::string check(const ContactTest& test) {
+  const std::string refusal =
+      check("ContactTest", {{"threshold_per_mm", test.threshold_per_mm, positive},
+                            {"free_apex_mm", test.free_apex_mm, finite_number},
+                            {"min_region_px", test.min_region_px, at_least(1)},
+                            {"touching_gap_mm", test.touching_gap_mm, within(0, 1)}});
+  return refusal.empty() ? check(test.ring) : refusal;
+}
 
 /// The contact of a frame. Without contact, areas are 0 and all other values NaN.
 ///
@@ -51,101 +80,101 @@ struct [[nodiscard]] ContactResult {
   bool in_contact() const { return contact_px > 0; }
 };
 
-/// The contact region of depth maps of one size.
-///   Edge        HalfLevelEdge       use it when the area matters
-///               AtThreshold         use it when only the place of the contact matters
-///   CameraType  Camera<double>      use it for depth maps along a camera's rays
-///               OrthographicCamera  use it for height maps
+/// The contact region of depth maps of one size, computed in the scalar S.
 /// published/contact_region.hpp is the test as printed.
 /// A pixel without depth is never contact. A pixel whose ring is partly missing is judged by the
-/// remaining directions; if these are too few (ContactTest::ring) it is unknown.
+/// remaining directions; if these are too few (ContactTest::ring) it is unknown. Both means see the
+/// same level of the free membrane all over the frame: a pad that is sheared bulges unevenly, which
+/// moves the edge by a few hundredths of the contact's width.
 ///
-/// Threads may share one object, each with its own workspace. Bounded time and no allocation per
-/// frame; O(rows cols directions).
-template <class Edge = HalfLevelEdge, class CameraType = Camera<double>, scalar S = float>
+/// One object a thread. Bounded time and no allocation per frame; O(rows cols directions).
+template <scalar S = float>
 class ContactRegion {
-  static_assert(!scalar<Edge>,
-                "the scalar comes last: ContactRegion<HalfLevelEdge, Camera<double>, double>");
-
-  using Finder = detail::EdgeFinder<Edge, S>;
-
  public:
-  /// Refuses bad parameters (parameter_error).
-  ContactRegion(const CameraType& camera,
-                Index rows,
-                Index cols,
-                const ContactTest& test = {},
-                const Edge& edge = {})
-      : test_(checked(camera, rows, cols, test, edge)),
+  /// Depths along the rays of a Camera, or heights of an OrthographicCamera; rows and cols in
+  /// [2, 1e6], at most 1e8 pixels. Refuses bad parameters (parameter_error).
+  template <class CameraType = Camera<double>>
+  ContactRegion(const CameraType& camera, Index rows, Index cols, const ContactTest& test = {})
+      : test_(checked(camera, rows, cols, test)),
         image_{rows, cols},
+        regions_(image_),
         curvature_(camera, rows, cols, test.ring),
-        finder_(edge, test, camera, image_),
-        rays_(camera, rows, cols) {}
-
-  /// Scratch memory for a frame; one per thread.
-  class Workspace {
-   public:
-    explicit Workspace(const ContactRegion& region)
-        : regions_(region.image_),
-          curvature_(region.curvature_),
-          ring_(region.test_.ring),
-          statistic_(static_cast<std::size_t>(region.image_.size()), not_a_number<S>()),
-          finder_(region.finder_.workspace()) {}
-
-    /// The statistic of the last frame, 1/mm; NaN where it is unknown.
-    StridedView<const S> statistic() const { return regions_.image().view(statistic_.data()); }
-
-   private:
-    friend class ContactRegion;
-    detail::Regions regions_;
-    CurvatureMap<S> curvature_;
-    CurvatureRing ring_;
-    std::vector<S> statistic_;
-    typename Finder::Workspace finder_;
-  };
-  Workspace workspace() const { return Workspace(*this); }
+        statistic_(static_cast<std::size_t>(image_.size()), not_a_number<S>()),
+        edge_(image_,
+              test.ring,
+              test.touching_gap_mm,
+              static_cast<double>(value(camera.pitch_mm)),
+              static_cast<double>(value(growth_per_mm(camera))),
+              static_cast<double>(value(camera.pixel_aspect))) {
+    const auto eye = cast<double>(camera);
+    center_px_ = {eye.center_x_px, eye.center_y_px};
+    aspect_ = eye.pixel_aspect;
+    rays_.reserve(static_cast<std::size_t>(rows * cols));
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        rays_.push_back(detail::mm_per_px(eye, static_cast<double>(i), static_cast<double>(j)));
+      }
+    }
+  }
 
   /// Finds the contact in a depth map in mm. Cells of `mask` become a Touch if they are of that
-  /// type, else 255 (or true) in contact and 0 elsewhere.
+  /// type, else 255 (or true) in contact and 0 elsewhere. Refuses other sizes, and then writes
+  /// nothing.
   template <grid Depth, class Mask>
-  ContactResult operator()(const Depth& depth_mm, Mask&& mask, Workspace& w) const {
+  ContactResult operator()(const Depth& depth_mm, Mask&& mask) {
     detail::writes_to<Mask>();
     ContactResult result;
     const auto depth = as_view(depth_mm);
     const auto to = as_view(mask);
-    if (!has_size(depth) || !has_size(to) || w.regions_.image() != image_ ||
-        w.ring_ != test_.ring) {
+    if (!has_size(depth) || !has_size(to)) {
       return result;
     }
-    const auto statistic = image_.view(w.statistic_.data());
-    result.unknown_px = w.curvature_(depth, statistic).unknown_px;
-    mark_seeds(statistic, w.regions_.marks());
+    const auto statistic = image_.view(statistic_.data());
+    const auto marks = regions_.marks();
+    const S threshold = S(test_.threshold_per_mm);
+    result.unknown_px = curvature_(depth, statistic).unknown_px;
+    for (Index i = 0; i < image_.rows; ++i) {
+      detail::mark_below(threshold, statistic.row(i), image_.cols, marks.row(i));
+    }
+    if (test_.places_edge) {
+      edge_.prepare(curvature_, statistic_.data(), regions_, threshold + threshold);
+    }
     const auto keep = [this](const detail::Regions::Region& region) {
       return region.pixels() >= test_.min_region_px;
     };
-    result.regions = finder_(depth, w.statistic_.data(), w.curvature_, keep, w.regions_, w.finder_);
-    write(w.regions_.marks(), to);
-    measure(w.regions_.marks(), depth, result);
+    result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
+      if (test_.places_edge) {
+        edge_.place(depth, regions_, region);
+      }
+    });
+    write(marks, to);
+    measure(marks, depth, result);
     result.status = is_of_this_pad(result) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     return result;
   }
+
+  /// The mean curvature of the last frame that the threshold was compared with, 1/mm; NaN where it
+  /// is unknown.
+  StridedView<const S> statistic() const { return image_.view(statistic_.data()); }
 
   Index rows() const { return image_.rows; }
   Index cols() const { return image_.cols; }
 
  private:
-  static const ContactTest& checked(
-      const CameraType& camera, Index rows, Index cols, const ContactTest& test, const Edge& edge) {
+  template <class CameraType>
+  static const ContactTest& checked(const CameraType& camera,
+                                    Index rows,
+                                    Index cols,
+                                    const ContactTest& test) {
     expects_grid_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
     require(camera);
-    expects_valid(test);
-    expects_valid(edge);
-    using C = decltype(camera.pitch_mm);
+    require(test);
+    const auto eye = cast<double>(camera);
     for (const double end : {0.0, 1.0}) {  // first and last pixel
-      const auto corner = point_at(camera, C(end * static_cast<double>(rows - 1)),
-                                   C(end * static_cast<double>(cols - 1)), C(0));
+      const auto corner = point_at(eye, end * static_cast<double>(rows - 1),
+                                   end * static_cast<double>(cols - 1), 0.0);
       expects(is_plausible(corner), "ContactRegion", "camera: corner of the image, mm",
-              value(corner.x) + value(corner.y), "less than a million from the axis");
+              corner.x + corner.y, "less than a million from the axis");
     }
     return test;
   }
@@ -153,14 +182,6 @@ class ContactRegion {
   template <class G>
   bool has_size(const G& g) const {
     return g.rows() == image_.rows && g.cols() == image_.cols;
-  }
-
-  template <class View, class Marks>
-  void mark_seeds(const View& statistic, const Marks& marks) const {
-    const S threshold = S(test_.threshold_per_mm);
-    for (Index i = 0; i < image_.rows; ++i) {
-      detail::mark_below(threshold, statistic.row(i), image_.cols, marks.row(i));
-    }
   }
 
   template <class Cell>
@@ -191,20 +212,54 @@ class ContactRegion {
     }
   }
 
+  Point3<double> point(Index i, Index j, double depth_mm) const {
+    const auto& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
+    const double mm_per_px = ray.at_plate + ray.per_mm * depth_mm;
+    return {(static_cast<double>(j) - center_px_.x) * mm_per_px,
+            (static_cast<double>(i) - center_px_.y) * aspect_ * mm_per_px, depth_mm};
+  }
+
+  /// Sums over the pixels in contact, each weighted with the area that it sees, projected on the
+  /// plate: the differences of its neighbours' points. They are linear along each axis, so that
+  /// noise does not add up. An unknown neighbour counts as being as deep as the pixel, and so do
+  /// all of them if the surface would be seen from behind, which no camera can do.
   template <class View>
   void measure(const StridedView<detail::Mark>& marks,
                const View& depth_mm,
                ContactResult& result) const {
-    const detail::RegionMeasures sums(marks, depth_mm, rays_);
-    result.contact_px = sums.pixels();
+    using detail::Mark;
+    Point3<double> moment = {0, 0, 0};
+    for (Index i = 0; i < image_.rows; ++i) {
+      const Index up = (std::max)(i - 1, Index(0)), down = (std::min)(i + 1, image_.rows - 1);
+      const Mark* row = marks.row(i);
+      const Mark* end = row + image_.cols;
+      for (const Mark* at = detail::find_mark(row, end, Mark::contact); at != end;
+           at = detail::find_mark(at + 1, end, Mark::contact)) {
+        const Index j = at - row;
+        const Index left = (std::max)(j - 1, Index(0)), right = (std::min)(j + 1, image_.cols - 1);
+        const double depth = static_cast<double>(depth_mm(i, j));
+        const auto seen = [&](Index r, Index c) {
+          const bool known = marks(r, c) != Mark::unknown;
+          return point(r, c, known ? static_cast<double>(depth_mm(r, c)) : depth);
+        };
+        const auto across = seen(i, right) - seen(i, left), along = seen(down, j) - seen(up, j);
+        const auto& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
+        const double span = static_cast<double>((right - left) * (down - up));
+        const double area = (across.x * along.y - across.y * along.x) / span;
+        const double mm_per_px = ray.at_plate + ray.per_mm * depth;
+        const double positive_area = area > 0 ? area : mm_per_px * mm_per_px * aspect_;
+        ++result.contact_px;
+        result.area_mm2 += positive_area;
+        moment += positive_area * point(i, j, depth);
+      }
+    }
     if (result.in_contact()) {
-      result.area_mm2 = sums.area_mm2();
-      result.center_mm = sums.center_mm();
+      result.center_mm = moment / result.area_mm2;
       result.depth_mm = test_.free_apex_mm - result.center_mm.z;
     }
   }
 
-  /// Where nothing is known, nothing is free either. Of an apex that is not one nothing is said.
+  /// Where nothing is known, nothing is free either. An apex of 0 or less is not compared.
   bool is_of_this_pad(const ContactResult& result) const {
     if (result.unknown_px == rows() * cols()) {
       return false;
@@ -215,9 +270,13 @@ class ContactRegion {
 
   ContactTest test_;
   detail::BorderedImage image_;
+  detail::Regions regions_;
   CurvatureMap<S> curvature_;
-  Finder finder_;
-  detail::PixelRays<CameraType> rays_;
+  std::vector<S> statistic_;
+  detail::EdgePlacer<S> edge_;
+  Point2<double> center_px_ = {0, 0};
+  double aspect_ = 1;
+  std::vector<detail::MmPerPx<double>> rays_;
 };
 
 }  // namespace v0

@@ -79,7 +79,6 @@ struct FingertipMethods {
 
   using Smoothing = BiasFreeMean;
   using Inverse = ExponentialFree<>;
-  using Edge = HalfLevelEdge;
   using Solver = LeastSquares;
   using Pixel = std::uint8_t;          ///< cell of the frame's channels
   using Executor = detail::OneThread;  ///< runs the work of a frame

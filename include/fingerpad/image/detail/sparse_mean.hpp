@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The mean of nine pixels (3 x 3) that are `distance` apart. If the map's noise is smooth over this
-// distance, it is nearly as good as the mean over the whole window and several times cheaper.
+// The mean of nine pixels (3 x 3) that are some distance apart. If the map's noise is smooth over
+// this distance, it is nearly as good as the mean over the whole window and several times cheaper.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -26,8 +26,10 @@ template <class V, class S>
 template <class S>
 class SparseMean {
  public:
-  SparseMean(Index cols, Index distance)
+  /// `distance` along rows, `row_distance` from row to row.
+  SparseMean(Index cols, Index distance, Index row_distance)
       : distance_(distance),
+        row_distance_(row_distance),
         line_(static_cast<std::size_t>(cols + 2 * distance), not_a_number<S>()) {}
 
   /// Averages a part of `map` into the same part of `out`. Beyond the part, columns count as
@@ -43,8 +45,8 @@ class SparseMean {
         return map.row(is_there ? at : i) + part.first_col;
       };
       const S* middle = row(i);
-      const S* above = row(i - distance_);
-      const S* below = row(i + distance_);
+      const S* above = row(i - row_distance_);
+      const S* below = row(i + row_distance_);
       S* to = out.row(i) + part.first_col;
       for_each_cell<S>(cols, [&]<class V>(Index j) {
         store_cells<S>(
@@ -70,6 +72,7 @@ class SparseMean {
   }
 
   Index distance_;
+  Index row_distance_;
   std::vector<S> line_;
 };
 

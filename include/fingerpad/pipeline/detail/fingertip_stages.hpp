@@ -137,15 +137,12 @@ struct FingertipLight {
 /// Contact region.
 template <class Options, class Methods>
 struct FingertipContact {
-  using Region = ContactRegion<typename Methods::Edge>;
   static constexpr int step = Methods::sampling;
-  Region region;
-  typename Region::Workspace work;
+  ContactRegion<> region;
   OwnedGrid<std::uint8_t> mask;
 
   explicit FingertipContact(const Options& o)
       : region(sampled(o.camera, step), o.rows / step, o.cols / step, test_of_samples(o)),
-        work(region.workspace()),
         mask(region.rows(), region.cols()) {}
 
   static ContactTest test_of_samples(const Options& o) {
@@ -157,7 +154,7 @@ struct FingertipContact {
 
   template <class Image>
   ContactResult find(const Image& image) {
-    return region(image.depth.view(), mask.view(), work);
+    return region(image.depth.view(), mask.view());
   }
 };
 
