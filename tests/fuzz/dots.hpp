@@ -39,12 +39,13 @@ template <class Point>
 Grid<Point> moved_dots(Input& in, const Grid<Point>& from) {
   using Number = decltype(Point::x);
   Grid<Point> dots = from;
-  const Point by{static_cast<Number>(in.number(-1, 1)), static_cast<Number>(in.number(-1, 1))};
+  const auto by_x = static_cast<Number>(in.number(-1, 1));
+  const auto by_y = static_cast<Number>(in.number(-1, 1));
   const auto view = dots.view();
   for (Index i = 0; i < view.rows(); ++i) {
     for (Index j = 0; j < view.cols(); ++j) {
-      view(i, j).x += by.x;
-      view(i, j).y += by.y;
+      view(i, j).x += by_x;
+      view(i, j).y += by_y;
     }
   }
   for (Index k = in.whole(0, 4); k > 0 && view.rows() > 0 && view.cols() > 0; --k) {

@@ -234,7 +234,7 @@ class CurvatureMap {
   /// Computes `count` means from cells[0] on, rounded up to whole vectors, and returns how many of
   /// them are known. Beyond the image none is.
   template <bool Clamped>
-  Index compute_segment(const S* cells, Index count) {
+  [[gnu::noinline]] Index compute_segment(const S* cells, Index count) {
     detail::lane_count<V> known{};
     for (Index j = 0; j < count; j += n) {
       const V zeta = detail::load_cells<V, S>(cells + j);

@@ -18,7 +18,7 @@
 // Green is averaged over the first window only. load_row is called for rows in order, once each,
 // from half a window before `first` on. Rounded sums restart every 32 rows and may begin up to 31
 // rows earlier. Loops over pixels are blocks of a length known to the compiler, which GCC 12
-// vectorises at -O2.
+// vectorises at -O2 unless it inlines them: then it forgets __restrict (tests/vectors).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -201,10 +201,10 @@ class WindowMeans {
     }
   }
 
-  static void clean(const window_limits_t<Pixel>& limits,
-                    Pixel* __restrict red,
-                    Pixel* __restrict green,
-                    std::uint8_t* __restrict valid) {
+  [[gnu::noinline]] static void clean(const window_limits_t<Pixel>& limits,
+                                      Pixel* __restrict red,
+                                      Pixel* __restrict green,
+                                      std::uint8_t* __restrict valid) {
     if constexpr (std::integral<Pixel>) {
       const ClosedRange<Pixel> range(limits);
       const Pixel low = range.low, high = range.high;
@@ -265,7 +265,9 @@ class WindowMeans {
     }
   }
   template <class T, class N>
-  static void move(const T* __restrict in, const T* __restrict out, N* __restrict sum) {
+  [[gnu::noinline]] static void move(const T* __restrict in,
+                                     const T* __restrict out,
+                                     N* __restrict sum) {
     for (Index i = 0; i < block; ++i) {
       sum[i] = N(sum[i] + N(in[i]) - N(out[i]));
     }
@@ -300,11 +302,11 @@ class WindowMeans {
 
   /// The mean of integers multiplies by the reciprocal, as box filters do, so that complete windows
   /// give the same bits.
-  static void divide(const Sum* sum_before,
-                     const Sum* sum_after,
-                     const std::uint32_t* before,
-                     const std::uint32_t* after,
-                     Mean* __restrict to) {
+  [[gnu::noinline]] static void divide(const Sum* sum_before,
+                                       const Sum* sum_after,
+                                       const std::uint32_t* before,
+                                       const std::uint32_t* after,
+                                       Mean* __restrict to) {
     for (Index i = 0; i < block; ++i) {
       const int count = int(after[i] - before[i]);
       if constexpr (std::integral<Pixel>) {
