@@ -73,8 +73,8 @@ template <class V, scalar S>
   const V none = every_lane<V>(S(0)), up = after - here, down = here - before;
   const auto has_up = known<V>(up - up), has_down = known<V>(down - down);
   const V rise = V(has_up ? up : none) + V(has_down ? down : none);
-  const V per_step = has_up & has_down ? every_lane<V>(per_mm / S(2)) : every_lane<V>(per_mm);
-  return has_up | has_down ? V(rise * per_step) : every_lane<V>(not_a_number<S>());
+  const V per_step = (has_up & has_down) ? every_lane<V>(per_mm / S(2)) : every_lane<V>(per_mm);
+  return (has_up | has_down) ? V(rise * per_step) : every_lane<V>(not_a_number<S>());
 }
 
 /// The equation for one pixel, or for each lane of a vector: the depth minus the effect of the
@@ -133,7 +133,7 @@ class NeighbourLightCompensation {
       S* has_psi = row_.data();
       detail::for_each_cell<S, lanes>(
           cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
-            const V psi = psi_at<V>(i, j), one = detail::every_lane<V>(S(1));
+            const V psi = this->template psi_at<V>(i, j), one = detail::every_lane<V>(S(1));
             detail::store_cells<S>(psi0 + j, psi);
             detail::store_cells<S>(has_psi + j, V(detail::known<V>(psi) ? one : one - one));
           });
@@ -244,7 +244,7 @@ class NeighbourLightCompensation {
         cols_, [ =, this, &is_any_lost ]<class V>(Index j) __attribute__((always_inline)) {
           const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
           const V before = detail::load_cells<V, S>(psi0 + j);
-          const V change = psi_at<V>(row, j) - before;
+          const V change = this->template psi_at<V>(row, j) - before;
           const auto is_seen = detail::known<V>(change);
           const V gone = is_seen ? none : V(detail::known<V>(before) ? one : none);
           detail::store_cells<S>(to + j, V(is_seen ? change : none));

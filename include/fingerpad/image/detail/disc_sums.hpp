@@ -60,7 +60,8 @@ class DiscSums {
   /// Sets the cells of row i.
   void set(Index i, const S* cells) {
     Sum* row = first_cell(i);
-    for_each_cell<S>(cols_, [=, steps = steps_]<class V>(Index j) {
+    const S steps = steps_;
+    for_each_cell<S>(cols_, [=]<class V>(Index j) {
       const V cell = load_cells<V, S>(cells + j);
       if constexpr (by_integers) {
         const V half = every_lane<V>(S(0.5)), in_steps = cell * steps;
@@ -82,7 +83,8 @@ class DiscSums {
     const Index top = (std::max)(-i, -reach), bottom = (std::min)(rows_ - 1 - i, reach);
     const Index* half_widths = half_widths_.data();
     const Sum* row = first_cell(i);
-    for_each_cell<Sum>(cols_, [=, unit = S(1) / steps_]<class V>(Index j) {
+    const S unit = S(1) / steps_;
+    for_each_cell<Sum>(cols_, [=]<class V>(Index j) {
       V sum = every_lane<V>(Sum(0));
       for (Index y = top; y <= bottom; ++y) {
         const Sum* center = row + y * stride + j;
@@ -90,8 +92,8 @@ class DiscSums {
         sum = sum + V(load_cells<V, Sum>(center + w) - load_cells<V, Sum>(center - w - 1));
       }
       if constexpr (by_integers) {
-        const auto steps = each_as<Like<S, V>>(std::bit_cast<Like<Int, V>>(sum));
-        store_cells<S>(to + j, Like<S, V>(unit * steps));
+        const auto in_steps = each_as<Like<S, V>>(std::bit_cast<Like<Int, V>>(sum));
+        store_cells<S>(to + j, Like<S, V>(unit * in_steps));
       } else {
         to[j] = sum;
       }
