@@ -83,9 +83,8 @@ struct [[nodiscard]] ContactResult {
 /// The contact region of depth maps of one size, computed in the scalar S.
 /// published/contact_region.hpp is the test as printed.
 /// A pixel without depth is never contact. A pixel whose ring is partly missing is judged by the
-/// remaining directions; if these are too few (ContactTest::ring) it is unknown. Both means see the
-/// same level of the free membrane all over the frame: a pad that is sheared bulges unevenly, which
-/// moves the edge by a few hundredths of the contact's width.
+/// remaining directions; if these are too few (ContactTest::ring) it is unknown. All
+/// contacts of a frame are compared with one level of the free membrane around them.
 ///
 /// One object a thread. Bounded time and no allocation per frame; O(rows cols directions).
 template <scalar S = float>

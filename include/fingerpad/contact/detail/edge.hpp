@@ -102,30 +102,29 @@ class EdgePlacer {
             (std::max)(2 * most, ((image.rows + 3) / 4) * ((image.cols + 3) / 4)))) {}
 
   /// Before the regions of a frame: their mean curvatures, and the level of the free membrane, the
-  /// median of the curvature `statistic` over the frame's free pixels (every fourth row and
-  /// column). `otherwise` is that level if no pixel is free.
+  /// median of the curvature `statistic` over the free pixels (every fourth row and column) within
+  /// three rings around all contacts. `otherwise` is that level if no pixel is free.
   void prepare(CurvatureMap<S>& map, const S* statistic, Regions& regions, const S& otherwise) {
     const auto marks = regions.marks();
+    const PixelBox seeds = box_of_seeds(marks);
+    if (seeds.first_row >= seeds.last_row) {
+      return;
+    }
     const auto free = image_.view(statistic);
+    const PixelBox near = grown(seeds, 3 * ring_rows_, 3 * ring_cols_);
     std::size_t count = 0;
-    for (Index i = 0; i < image_.rows; i += 4) {
-      for (Index j = 0; j < image_.cols; j += 4) {
+    for (Index i = near.first_row; i < near.last_row; i += 4) {
+      for (Index j = near.first_col; j < near.last_col; j += 4) {
         samples_[count] = free(i, j);
         count += marks(i, j) == Mark::free ? 1U : 0U;
       }
     }
     outside_ = count > 0 ? quantile(count, count / 2) : otherwise;
     // a region grows by at most the ring's radius; smoothing needs a few more columns
-    const PixelBox seeds = box_of_seeds(marks);
-    const PixelBox part = {(std::max)(seeds.first_row - ring_rows_, Index(0)),
-                           (std::min)(seeds.last_row + ring_rows_, image_.rows),
-                           (std::max)(seeds.first_col - ring_cols_ - spread_px_, Index(0)),
-                           (std::min)(seeds.last_col + ring_cols_ + spread_px_, image_.cols)};
-    if (seeds.first_row < seeds.last_row) {
-      map.mean(part.first_row, part.last_row, part.first_col, part.last_col,
-               image_.view(raw_.data()));
-      smoothing_(part, image_.view(raw_.data()), image_.view(mean_.data()));
-    }
+    const PixelBox part = grown(seeds, ring_rows_, ring_cols_ + spread_px_);
+    map.mean(part.first_row, part.last_row, part.first_col, part.last_col,
+             image_.view(raw_.data()));
+    smoothing_(part, image_.view(raw_.data()), image_.view(mean_.data()));
   }
 
   /// Grows and trims a region to the pixels whose mean curvature is below the level of its edge.
@@ -158,6 +157,13 @@ class EdgePlacer {
     std::nth_element(first, first + static_cast<std::ptrdiff_t>(k),
                      first + static_cast<std::ptrdiff_t>(count));
     return samples_[k];
+  }
+
+  PixelBox grown(const PixelBox& box, Index by_rows, Index by_cols) const {
+    return {(std::max)(box.first_row - by_rows, Index(0)),
+            (std::min)(box.last_row + by_rows, image_.rows),
+            (std::max)(box.first_col - by_cols, Index(0)),
+            (std::min)(box.last_col + by_cols, image_.cols)};
   }
 
   static PixelBox box_of_seeds(const StridedView<Mark>& marks) {
