@@ -273,6 +273,29 @@ TEMPLATE_TEST_CASE("every camera, scalar and edge finds the contact",
   check_edge<TestType>(with_ring(5));
 }
 
+TEST_CASE("pixels need not be square", "[contact_region]") {
+  const auto check = [](auto camera) {
+    const auto found = [&](double aspect) {
+      const Index rows = static_cast<Index>(std::lround(160 / aspect));
+      camera.pixel_aspect = aspect;
+      camera.center_y_px = static_cast<double>(rows - 1) / 2;
+      const auto depth = depths_of<float>(camera, RoundFilm({}), rows, 160);
+      return find(camera, depth, with_gap(with_ring(12), 0)).result;
+    };
+    const double square_mm = radius_of(found(1));
+    CHECK(square_mm == Approx(6).epsilon(0.025));
+    for (const double aspect : {0.8, 1.083, 1.25}) {
+      CAPTURE(aspect);
+      const ContactResult r = found(aspect);
+      CHECK(radius_of(r) == Approx(square_mm).epsilon(0.006));
+      CHECK(r.center_mm.x == Approx(0).margin(0.05));
+      CHECK(r.center_mm.y == Approx(0).margin(0.05));
+    }
+  };
+  check(height_map(160, 160, 0.16));
+  check(pad_camera(160, 160, 0.16));
+}
+
 TEST_CASE("specks are dropped", "[contact_region]") {
   // three flats in a bowl whose sections all bulge
   const auto camera = height_map(80, 160, 0.16);

@@ -56,8 +56,9 @@ struct Seen {
   Image<std::uint8_t> mask{120, 120, 0};
   double true_mm2;
 
-  explicit Seen(const Press& press, double mask_beyond_mm = 0)
+  explicit Seen(const Press& press, double mask_beyond_mm = 0, double aspect = 1)
       : true_mm2(std::numbers::pi * press.flat_mm * press.flat_mm) {
+    camera.pixel_aspect = S(aspect);
     std::vector<double> profile;
     for (int k = 0; k <= 260; ++k) {
       profile.push_back(press.height_mm(0.05 * k));
@@ -100,6 +101,14 @@ TEST_CASE("equivalent flat area: the balance of the membrane around any contact"
     // points 0.5 mm apart resolve a circle's area, and the slope at its rim, to 2 %
     RC_ASSERT(std::abs(seen.error()) < 0.03);
   });
+}
+
+TEST_CASE("equivalent flat area: pixels need not be square", "[contact]") {
+  for (const double aspect : {0.8, 1.083, 1.25}) {
+    CAPTURE(aspect);
+    Seen<> seen({5.5, 5, 9, 0, 0.3}, 0, aspect);
+    CHECK(std::abs(seen.error()) < 0.03);
+  }
 }
 
 TEST_CASE("equivalent flat area: a tension that grows with the distance", "[contact]") {
