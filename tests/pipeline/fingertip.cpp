@@ -346,6 +346,29 @@ TEST_CASE("the size of frames has no default", "[chain]") {
   CHECK(options.cols == 0);
 }
 
+TEST_CASE("a free apex that is not that of the reference is refused", "[chain]") {
+  auto options = frames().options();
+  const double apex_mm = options.contact.free_apex_mm;
+  const auto with = [&](double share) {
+    options.contact.free_apex_mm = share * apex_mm;
+    return test::refusal([&] { TipOf<Sampled<3>> tip(options); });
+  };
+  for (const double share : {0.96, 1.0, 1.04}) {
+    CHECK(with(share) == "accepted");
+  }
+  for (const double share : {0.001, 0.9, 1.1, 1000.0}) {
+    CHECK(with(share).find("FingertipOptions: contact.free_apex_mm = ") == 0);
+    CHECK(with(share).find("within 5 % of the highest point of the reference's shape") !=
+          std::string::npos);
+  }
+  // the same if the shape is wrong
+  options.contact.free_apex_mm = apex_mm;
+  for (auto& depth_mm : options.reference.depth_mm) {
+    depth_mm = depth_mm * 9 / 10;
+  }
+  CHECK(with(1) != "accepted");
+}
+
 TEST_CASE("a fingertip takes the neighbour light off as that method does", "[chain]") {
   auto options = frames().options();
   options.camera.pixel_aspect = 1.25;

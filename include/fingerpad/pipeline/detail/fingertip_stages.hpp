@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -145,8 +146,20 @@ struct FingertipContact {
       : region(sampled(o.camera, step), o.rows / step, o.cols / step, test_of_samples(o)),
         mask(region.rows(), region.cols()) {}
 
+  /// Refuses a free apex more than 5 % off the highest point of the reference's shape: one of them
+  /// is of another pad or unit, and every contact depth would be off by their difference. 5 % of a
+  /// pad of 13 mm are 0.65 mm, more than a measured height errs.
   static ContactTest test_of_samples(const Options& o) {
     ContactTest test = o.contact;
+    double apex_mm = 0;
+    for (const auto& depth_mm : o.reference.depth_mm) {
+      apex_mm = (std::max)(apex_mm, is_depth(depth_mm) ? static_cast<double>(depth_mm) : 0.0);
+    }
+    expects(
+        !(apex_mm > 0) || std::fabs(test.free_apex_mm / apex_mm - 1) <= 0.05, "FingertipOptions",
+        "contact.free_apex_mm", test.free_apex_mm,
+        ("within 5 % of the highest point of the reference's shape, " + written(apex_mm) + " mm")
+            .c_str());
     test.ring.radius_px = (std::max)(test.ring.radius_px / step, 1.0);
     test.min_region_px = (test.min_region_px + step * step - 1) / (step * step);
     return test;
