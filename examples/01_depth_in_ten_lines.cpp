@@ -30,11 +30,10 @@ int main(int argc, char** argv) {
   const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
   const fingerpad::Absorption<double> fluid;  // the published fluid
   const auto reference = fit_reference(camera, fluid, red_of(pad), green_of(pad), shape);
-  const fingerpad::DepthEstimator estimate(camera, fluid, reference);
-  auto workspace = estimate.workspace<std::uint8_t>();  // nothing is allocated after this
+  fingerpad::DepthEstimator estimate(camera, fluid, reference);  // nothing is allocated after this
 
   cv::Mat1f depth_mm(frame.size());
-  const auto result = estimate(red_of(frame), green_of(frame), depth_mm, workspace);
+  const auto result = estimate(red_of(frame), green_of(frame), depth_mm);
 
   const float center = depth_mm(240, 240);
   std::printf("%td of %td pixels have a depth; %.2f mm at the center, %.2f mm in the free pad\n",

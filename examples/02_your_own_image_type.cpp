@@ -71,11 +71,10 @@ int main() {
 
   const auto reference = fingerpad::fit_reference(camera, fluid, PackedChannel{&free_pad, 16},
                                                   PackedChannel{&free_pad, 8}, shape);
-  const fingerpad::DepthEstimator estimate(camera, fluid, reference, fingerpad::AnchoredMean{7});
-  auto workspace = estimate.workspace<std::uint8_t>();
+  fingerpad::DepthEstimator estimate(camera, fluid, reference, {.window_px = 7});
   std::vector<float> depth_mm(rows * cols);
   (void)estimate(PackedChannel{&frame, 16}, PackedChannel{&frame, 8},
-                 fingerpad::StridedView<float>(depth_mm.data(), rows, cols, cols), workspace);
+                 fingerpad::StridedView<float>(depth_mm.data(), rows, cols, cols));
 
   const double center = static_cast<double>(depth_mm[60 * cols + 80]);
   std::printf(

@@ -9,7 +9,6 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/published/depth.hpp"
 #if __has_include(<xtensor/containers/xtensor.hpp>)
 #include <xtensor/containers/xtensor.hpp>
 #else
@@ -42,9 +41,7 @@ int main() {
                                   [&](Index i, Index j) { return level(i, j, &Colour::green); });
 
   const auto reference = fingerpad::fit_reference(camera, fluid, red, green, shape);
-  const fingerpad::DepthEstimator estimate(camera, fluid, reference,
-                                           fingerpad::published::BoxMean{5});
-  auto workspace = estimate.workspace<std::uint8_t>();
+  fingerpad::DepthEstimator estimate(camera, fluid, reference, {.window_px = 5});
 
   // The same frame in three libraries: column-major, row-major, and with interleaved channels.
   Eigen::Array<std::uint8_t, -1, -1> eigen_red(rows, cols), eigen_green(rows, cols);
@@ -61,11 +58,11 @@ int main() {
   Eigen::Array<float, -1, -1, Eigen::RowMajor> lazy(rows, cols), eigen(rows, cols);
   xt::xtensor<float, 2> xtensor({rows, cols});
   cv::Mat1f opencv(rows, cols);
-  const auto result = estimate(red, green, lazy, workspace);
-  (void)estimate(eigen_red, eigen_green, eigen, workspace);
-  (void)estimate(xt_red, xt_green, xtensor, workspace);
+  const auto result = estimate(red, green, lazy);
+  (void)estimate(eigen_red, eigen_green, eigen);
+  (void)estimate(xt_red, xt_green, xtensor);
   (void)estimate(fingerpad::channel<std::uint8_t>(image, 2),
-                 fingerpad::channel<std::uint8_t>(image, 1), opencv, workspace);
+                 fingerpad::channel<std::uint8_t>(image, 1), opencv);
 
   const auto same = [&](const float* other) {
     return std::memcmp(lazy.data(), other, sizeof(float) * std::size_t(rows * cols)) == 0;

@@ -30,8 +30,7 @@ int main(int argc, char** argv) {
   const fingerpad::Camera<double> camera{.center_x_px = 239.5, .center_y_px = 239.5};
   const fingerpad::Absorption<double> fluid;
   const auto reference = fit_reference(camera, fluid, red(pad), green(pad), shape);
-  const fingerpad::DepthEstimator depth_of(camera, fluid, reference);
-  auto depth_workspace = depth_of.workspace<std::uint8_t>();
+  fingerpad::DepthEstimator depth_of(camera, fluid, reference);
 
   // Once per sensor: the threshold from the free pad's shape. More frames of it would also give the
   // noise.
@@ -44,7 +43,7 @@ int main(int argc, char** argv) {
   // Every frame.
   cv::Mat1f depth_mm(frame.size());
   cv::Mat1b mask(frame.size());
-  (void)depth_of(red(frame), green(frame), depth_mm, depth_workspace);
+  (void)depth_of(red(frame), green(frame), depth_mm);
   const fingerpad::ContactResult contact = contact_of(depth_mm, mask);
   const auto surface = fit_surface(camera, depth_mm, mask);
 

@@ -96,25 +96,19 @@ void add_power_law() {
       });
 }
 
-template <class S, class Scattering, class Heights>
-std::vector<double> depth_errors(const bench::Scene& scene,
-                                 const DepthReference<S, Scattering, Heights>& reference) {
-  const DepthEstimator<NoSmoothing, Newton, Heights, S, Scattering> estimator(
-      scene.pad.camera, scene.pad.fluid, reference);
-  const auto found = test::estimate<S>(estimator, scene.pad.frame<double>(scene.pressed_mm));
-  std::vector<double> errors;
-  for (std::size_t k = 0; k < found.depth_mm.cells.size(); ++k) {
-    if (is_finite(scene.pressed_mm.cells[k])) {
-      errors.push_back(found.depth_mm.cells[k] - scene.pressed_mm.cells[k]);
-    }
-  }
-  return errors;
+/// An estimator without smoothing from what a fit returns.
+DepthEstimator<double> estimator_of(const bench::Scene& scene, const DepthReference<double>& of) {
+  return {scene.pad.camera, scene.pad.fluid, of, {.window_px = 1}};
+}
+published::DepthEstimator<> estimator_of(const bench::Scene&,
+                                         const published::DepthEstimator<>& of) {
+  return of;
 }
 
-/// `fit(scene, free frame)` returns the reference.
+/// `fit(scene, free frame)` returns a reference, or the published estimator, which holds its own.
 template <class Fit>
-void add_reference(const std::string& name, const Fit& fit) {
-  const auto scene = std::make_shared<bench::Scene>(bench::round_pad());
+void add_reference(const std::string& name, const bench::Scene& of, const Fit& fit) {
+  const auto scene = std::make_shared<bench::Scene>(of);
   const auto free =
       std::make_shared<test::Frame<double>>(scene->pad.frame<double>(scene->free_mm, scene->noise));
   const bench::Memory memory;
@@ -123,23 +117,30 @@ void add_reference(const std::string& name, const Fit& fit) {
       "reference of a free pad/" + name, 1, memory.bytes(),
       [=] { benchmark::DoNotOptimize(fit(*scene, *free)); },
       [=](auto& counters) {
-        bench::note_errors(counters, "depth", "mm", depth_errors(*scene, reference));
+        auto estimate = estimator_of(*scene, reference);
+        const auto seen = scene->pad.frame<double>(scene->pressed_mm);
+        test::Image<double> depth_mm(scene->pad.rows, scene->pad.cols);
+        (void)estimate(seen.red, seen.green, depth_mm);
+        bench::note_errors(counters, "depth", "mm", bench::errors_of(depth_mm, scene->pressed_mm));
       });
 }
 
 void add_references() {
-  const auto published = [](const auto& smoothing) {
+  const auto published = [](int window_px) {
     return [=](const bench::Scene& s, const test::Frame<double>& free) {
-      return published::depth_reference<double, AstigmaticHeights>(
-          s.pad.camera, s.pad.fluid, free.red, free.green, s.free_mm, smoothing);
+      return published::DepthEstimator<>(s.pad.published(window_px), free.red, free.green,
+                                         s.free_mm);
     };
   };
-  add_reference("published: quotients of a smoothed frame", published(published::BoxMean()));
-  add_reference("quotients of a frame as it is", published(NoSmoothing()));
-  add_reference("fit_reference", [](const bench::Scene& s, const test::Frame<double>& free) {
-    return fit_reference<AstigmaticHeights, double>(s.pad.camera, s.pad.fluid, free.red, free.green,
-                                                    s.free_mm);
-  });
+  bench::Scene one_height = bench::round_pad();
+  one_height.pad.one_height = true;
+  add_reference("published: quotients of a smoothed frame", one_height, published(29));
+  add_reference("quotients of a frame as it is", one_height, published(1));
+  add_reference("fit_reference", bench::round_pad(),
+                [](const bench::Scene& s, const test::Frame<double>& free) {
+                  return fit_reference<double>(s.pad.camera, s.pad.fluid, free.red, free.green,
+                                               s.free_mm);
+                });
 }
 
 Samples samples_of(const std::vector<std::string>& scenes,

@@ -1,18 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Depth from smoothed planes of red and green by every inverse. The error is of each pixel against
-// the root in long double of the same equation with the same inputs. Quantities that depend only on
-// the pixel (its pencil and g) are computed before the clock starts, for every inverse.
-#include "fingerpad/published/depth.hpp"
+// the root in long double of the same equation with the same inputs; that of the published method
+// has one height in both directions of a pencil. Quantities that depend only on the pixel (its
+// pencil and g) are computed before the clock starts, for every inverse.
+#include "fingerpad/depth/depth.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -23,7 +27,6 @@ namespace {
 template <class S>
 struct Inputs {
   Absorption<S> fluid;
-  DepthReference<S> reference;
   std::vector<S> red;
   std::vector<S> green;
   std::vector<Pencil<S>> pencils;
@@ -33,20 +36,12 @@ struct Inputs {
     const auto colours = scene.pad.frame<float>(scene.free_mm);
     red.assign(colours.red.cells.begin(), colours.red.cells.end());
     green.assign(colours.green.cells.begin(), colours.green.cells.end());
-    const auto fitted = scene.pad.reference<float>();
-    reference.rows = fitted.rows;
-    reference.cols = fitted.cols;
-    reference.pixels_used = fitted.pixels_used;
-    reference.depth_mm.assign(fitted.depth_mm.begin(), fitted.depth_mm.end());
-    reference.scattering.rho_max_mm = S(fitted.scattering.rho_max_mm);
-    std::copy(fitted.scattering.coefficient.begin(), fitted.scattering.coefficient.end(),
-              reference.scattering.coefficient.begin());
+    const auto reference = scene.pad.reference<float>();
+    g.assign(reference.scattering.begin(), reference.scattering.end());
     const auto camera = cast<S>(scene.pad.camera);
-    for (Index i = 0; i < reference.rows; ++i) {
-      for (Index j = 0; j < reference.cols; ++j) {
-        const auto ray = ray_at_pixel(camera, S(i), S(j));
-        pencils.push_back(pencil_of(camera, ray));
-        g.push_back(reference.scattering(i, j, S(ray.plate_rho_mm * ray.plate_rho_mm)));
+    for (Index i = 0; i < scene.pad.rows; ++i) {
+      for (Index j = 0; j < scene.pad.cols; ++j) {
+        pencils.push_back(pencil_of(camera, ray_at_pixel(camera, S(i), S(j))));
       }
     }
   }
@@ -72,27 +67,16 @@ struct Planes {
   Colour<S> colour(std::size_t k) const { return {red[k], green[k]}; }
 };
 
-Image<double> exact_depths(const bench::Scene& scene) {
+Image<double> exact_depths(const bench::Scene& scene, bool one_height) {
   const Inputs<long double> inputs(scene);
   const Planes<long double> in(inputs);
   Image<double> depth(scene.pad.rows, scene.pad.cols);
   for (std::size_t k = 0; k < depth.cells.size(); ++k) {
-    const auto root = newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
+    auto pencil = in.pencils[k];
+    pencil.height.sagittal_mm =
+        one_height ? pencil.height.meridional_mm : pencil.height.sagittal_mm;
+    const auto root = newton_depth(in.fluid, pencil, in.g[k], in.colour(k));
     depth.cells[k] = static_cast<double>(root.depth_mm);
-  }
-  return depth;
-}
-
-/// The published bisection at its fastest: without range checks and without a status.
-double bisection(const Absorption<double>& fluid,
-                 const Pencil<double>& pencil,
-                 double g,
-                 const Colour<double>& colour) {
-  double depth = fluid.max_depth_mm / 2;
-  double step = depth / 2;
-  for (int i = 2; i < 16; ++i) {
-    depth += published::quotient(fluid, pencil, colour, depth) < g ? -step : step;
-    step /= 2;
   }
   return depth;
 }
@@ -101,7 +85,8 @@ struct Bench {
   bench::Scene scene;
   Inputs<float> single{scene};
   Inputs<double> full{scene};
-  Image<double> exact = exact_depths(scene);
+  Image<double> exact = exact_depths(scene, false);
+  Image<double> exact_of_one_height = exact_depths(scene, true);
 
   template <class S>
   const Inputs<S>& inputs() const {
@@ -118,18 +103,20 @@ struct Bench {
   }
 
   /// `work(inputs, depth, status)` fills the two outputs. `memory` is made before everything that
-  /// `work` holds.
+  /// `work` holds. A row without a truth is a yardstick.
   template <class S, class Work>
-  void add(const std::string& name, Work work, const bench::Memory& memory = {}) const {
+  void add(const std::string& name,
+           Work work,
+           const Image<double>* truth = nullptr,
+           const bench::Memory& memory = {}) const {
     const auto depth = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
     const auto status = std::make_shared<Image<PixelStatus>>(scene.pad.rows, scene.pad.cols);
-    const bool is_yardstick = name.starts_with("streaming");
     bench::add(
         group() + "/" + name, scene.pixels(), memory.bytes(),
         [=, this] { work(inputs<S>(), depth->cells.data(), status->cells.data()); },
-        [=, this](auto& counters) {
-          if (!is_yardstick) {
-            bench::note_errors(counters, "depth", "mm", bench::errors_of(*depth, exact));
+        [=](auto& counters) {
+          if (truth != nullptr) {
+            bench::note_errors(counters, "depth", "mm", bench::errors_of(*depth, *truth));
           }
         });
   }
@@ -137,54 +124,55 @@ struct Bench {
   /// `find_root(inputs, k)` is called for every pixel k.
   template <class S, class FindRoot>
   void each_pixel(const std::string& name, FindRoot find_root) const {
-    add<S>(name, [=](Planes<S> in, S* depth, PixelStatus* status) {
-      for (std::size_t k = 0; k < in.size; ++k) {
-        const DepthRoot<S> root = find_root(in, k);
-        depth[k] = root.depth_mm;
-        status[k] = root.status;
-      }
-    });
+    add<S>(
+        name,
+        [=](Planes<S> in, S* depth, PixelStatus* status) {
+          for (std::size_t k = 0; k < in.size; ++k) {
+            const DepthRoot<S> root = find_root(in, k);
+            depth[k] = root.depth_mm;
+            status[k] = root.status;
+          }
+        },
+        &exact);
   }
 
-  template <class S, int Order, int Degree, int Radial, class Scattering>
-  void add_rows(const std::string& name, const DepthReference<S, Scattering>& reference) const {
-    using Policy = ExponentialFree<Order, Degree, Radial>;
-    using Rows = detail::DepthRows<Policy, AstigmaticHeights, S, Scattering>;
+  template <class S>
+  void add_rows(const std::string& name) const {
+    using Polynomial = detail::DepthPolynomial<S>;
     const bench::Memory memory;
-    const auto rows =
-        std::make_shared<const Rows>(scene.pad.camera, scene.pad.fluid, reference, Policy());
-    const auto work = [=, height = scene.pad.rows, width = scene.pad.cols](Planes<S> in, S* depth,
-                                                                           PixelStatus* status) {
-      for (Index i = 0; i < height; ++i) {
-        const Index k = i * width;
-        rows->invert(i, width, in.red + k, in.green + k, depth + k, status + k);
+    const auto& camera = scene.pad.camera;
+    const auto& g = inputs<S>().g;
+    const auto polynomial = std::make_shared<const Polynomial>(
+        camera, scene.pad.fluid, std::hypot(camera.center_x_px, camera.center_y_px) + 1,
+        *std::min_element(g.begin(), g.end()));
+    const auto per_g = std::make_shared<std::vector<S>>(g);
+    std::for_each(per_g->begin(), per_g->end(), [](S& x) { x = 1 / x; });
+    const auto work = [=, rows = int(scene.pad.rows), cols = int(scene.pad.cols)](
+                          Planes<S> in, S* depth, PixelStatus* status) {
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < cols; j += int(Polynomial::block)) {
+          const int k = i * cols + j;
+          polynomial->invert(i, j, in.red + k, in.green + k, per_g->data() + k, depth + k,
+                             status + k);
+        }
       }
     };
-    add<S>(name, work, memory);
-  }
-
-  /// Rows with g folded into the polynomials and with g as a plane of its own.
-  template <int Order, int Degree, int Radial = 3>
-  void add_single() const {
-    const std::string name = "exponential-free float <" + std::to_string(Order) + ", " +
-                             std::to_string(Degree) +
-                             (Radial == 3 ? ">" : ", " + std::to_string(Radial) + ">");
-    add_rows<float, Order, Degree, Radial>(name, single.reference);
-    DepthReference<float, published::PixelScattering<float>> planar;
-    planar.rows = single.reference.rows;
-    planar.cols = single.reference.cols;
-    planar.depth_mm = single.reference.depth_mm;
-    planar.pixels_used = single.reference.pixels_used;
-    planar.scattering = {planar.cols, single.g};
-    add_rows<float, Order, Degree, Radial>(name + ", plane of g", planar);
+    add<S>(name, work, &exact, memory);
   }
 
   void add_baselines() const {
-    add<double>("published bisection, double", [](Planes<double> in, double* depth, PixelStatus*) {
-      for (std::size_t k = 0; k < in.size; ++k) {
-        depth[k] = bisection(in.fluid, in.pencils[k], in.g[k], in.colour(k));
-      }
-    });
+    add<double>(
+        "published bisection, double",
+        [](Planes<double> in, double* depth, PixelStatus*) {
+          const published::Fluid<double> fluid{in.fluid.c_red_per_mm, in.fluid.c_green_per_mm,
+                                               in.fluid.kappa};
+          for (std::size_t k = 0; k < in.size; ++k) {
+            depth[k] = published::bisect(fluid, in.pencils[k].path_factor,
+                                         in.pencils[k].height.meridional_mm, in.g[k], in.red[k],
+                                         in.green[k], in.fluid.max_depth_mm);
+          }
+        },
+        &exact_of_one_height);
     add<float>("streaming pass over two planes",
                [](Planes<float> in, float* depth, PixelStatus* status) {
                  for (std::size_t k = 0; k < in.size; ++k) {
@@ -220,12 +208,6 @@ struct Bench {
   }
 
   void add_pixelwise() const {
-    each_pixel<double>("bisect_depth, double", [](const auto& in, std::size_t k) {
-      return published::bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
-    });
-    each_pixel<float>("bisect_depth, float", [](const auto& in, std::size_t k) {
-      return published::bisect_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
-    });
     each_pixel<double>("newton_depth, double, cold", [](const auto& in, std::size_t k) {
       return newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });
@@ -246,19 +228,10 @@ int main(int argc, char** argv) {
   const Bench published{bench::full_pad(14)};
   published.add_baselines();
   published.add_pixelwise();
-  published.add_single<2, 5>();
-  published.add_single<2, 6>();
-  published.add_single<3, 5>();
-  published.add_single<3, 6>();
-  published.add_single<3, 6, 4>();
-  published.add_single<4, 5>();
-  published.add_single<4, 6>();
-  published.add_rows<double, 3, 6, 3>("exponential-free double <3, 6>", published.full.reference);
-  published.add_rows<double, 9, 12, 8>("exponential-free double <9, 12, 8>",
-                                       published.full.reference);
+  published.add_rows<float>("exponential-free float <3, 6>");
+  published.add_rows<double>("exponential-free double <9, 12, 8>");
   const Bench deep{bench::full_pad(18)};
   deep.add_baselines();
-  deep.add_single<2, 5>();
-  deep.add_single<3, 6>();
+  deep.add_rows<float>("exponential-free float <3, 6>");
   return bench::run(argc, argv);
 }

@@ -5,13 +5,11 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -66,29 +64,22 @@ struct Bench {
         [=](auto& counters) { bench::note_errors(counters, "depth", "mm", made()); });
   }
 
-  template <class Smoothing, class S = float, class Red, class Green>
+  template <class S, class Red, class Green>
   void add_ours(const std::string& group,
                 const std::string& name,
                 const Red& red,
-                const Green& green) const {
-    using Pixel = cell_t<Red>;
+                const Green& green,
+                int window_px) const {
     const auto reference = scene.pad.reference<S>();
     const bench::Memory memory;
-    const auto setup = std::make_shared<detail::ColourSetup<S>>();
-    setup->rows = scene.pad.rows;
-    setup->cols = scene.pad.cols;
-    for (const S l : reference.depth_mm) {
-      setup->in_pad.push_back(is_finite(l) ? 1 : 0);
-    }
-    if constexpr (Smoothing::anchored) {
-      setup->anchor = detail::anchor_of(scene.pad.camera, scene.pad.fluid, reference);
-    }
-    using Rows = detail::ColourRows<Pixel, S, Smoothing>;
-    const auto rows = std::make_shared<Rows>(*setup, Smoothing(), grey_scale_of<Pixel>());
+    const auto rows = std::make_shared<detail::ColourRows<S>>(
+        scene.pad.camera, scene.pad.fluid, reference,
+        detail::PadArea{0, 0, scene.pad.rows, scene.pad.cols}, window_px, 1);
     const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
-      rows->start(*setup, r, g, 0);
-      for (Index i = 0; i < setup->rows; ++i) {
-        rows->next(*setup, r, g, &smooth.red(i, 0), &smooth.green(i, 0));
+      const GreyScale scale = grey_scale_of<cell_t<Red>>();
+      rows->start(r, g, scale, 0);
+      for (Index i = 0; i < r.rows(); ++i) {
+        rows->next(r, g, scale, &smooth.red(i, 0), &smooth.green(i, 0));
       }
     };
     add<S>(group, name, work, memory);
@@ -96,11 +87,9 @@ struct Bench {
 
   template <class Red, class Green>
   void add_all_ours(const std::string& group, const Red& red, const Green& green) const {
-    add_ours<NoSmoothing>(group, "NoSmoothing", red, green);
-    add_ours<published::BoxMean>(group, "published::BoxMean", red, green);
-    add_ours<AnchoredMean>(group, "AnchoredMean", red, green);
-    add_ours<BiasFreeMean>(group, "BiasFreeMean, the default", red, green);
-    add_ours<BiasFreeMean, double>(group, "BiasFreeMean, double", red, green);
+    add_ours<float>(group, "NoSmoothing", red, green, 1);
+    add_ours<float>(group, "BiasFreeMean, the default", red, green, DepthOptions().window_px);
+    add_ours<double>(group, "BiasFreeMean, double", red, green, DepthOptions().window_px);
     bench::add_streaming(scene.name + ", " + group, scene.pixels());
   }
 

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The whole step: a noisy 8-bit frame, BGR BGR ..., to depth in mm and a status per pixel. The
-// error is of each visible pixel of the pad, under the plate and around it, against its true depth.
-// The reference is of a frame without noise, except for the quotient per pixel, which takes one
-// noisy 8-bit frame.
+// error is of each visible pixel of the pad, under the plate and around it, against its true depth;
+// of a sample, against the mean of its pixels. The reference is of a frame without noise, except
+// for the published method, which takes one noisy 8-bit frame and tells no status.
+#include <cstdint>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -11,6 +12,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
@@ -21,52 +23,70 @@ namespace {
 struct Bench {
   bench::Scene scene;
   bench::Interleaved<std::uint8_t> frame{scene.pressed_frame<std::uint8_t>()};
+  Image<double> mean_of_samples_mm = means<3>(scene.pressed_mm);
 
-  template <class Inverse, class Smoothing, class S, class Scattering, class Heights>
-  void add_with(const std::string& name,
-                const DepthReference<S, Scattering, Heights>& reference) const {
-    using Estimator = DepthEstimator<Smoothing, Inverse, Heights, S, Scattering>;
-    using Workspace = typename Estimator::template Workspace<std::uint8_t>;
-    const bench::Memory memory;
-    const auto estimator =
-        std::make_shared<const Estimator>(scene.pad.camera, scene.pad.fluid, reference);
-    const auto workspace =
-        std::make_shared<Workspace>(estimator->template workspace<std::uint8_t>());
-    const auto depth = std::make_shared<Image<S>>(scene.pad.rows, scene.pad.cols);
-    const auto status = std::make_shared<Image<PixelStatus>>(scene.pad.rows, scene.pad.cols);
+  template <int Step>
+  static Image<double> means(const Image<double>& depth_mm) {
+    const auto of = sampled(
+        DepthReference<double>{depth_mm.rows(), depth_mm.cols(), depth_mm.cells, {}, {}}, Step);
+    Image<double> out(of.rows, of.cols);
+    out.cells = of.depth_mm;
+    return out;
+  }
+
+  /// `measure(depth_mm)` fills a map. `memory` is made before everything that it holds.
+  template <class S, class Measure>
+  void add(const std::string& name,
+           const Image<double>& truth_mm,
+           const bench::Memory& memory,
+           Measure measure) const {
+    const auto depth_mm = std::make_shared<Image<S>>(truth_mm.rows(), truth_mm.cols());
     bench::add(
         scene.name + "/" + name, scene.pixels(), memory.bytes(),
-        [=, this] {
-          benchmark::DoNotOptimize(
-              (*estimator)(frame.red(), frame.green(), *depth, *status, *workspace));
-        },
-        [=, this](auto& counters) {
-          bench::note_errors(counters, "depth", "mm", bench::errors_of(*depth, scene.pressed_mm));
+        [=] { benchmark::DoNotOptimize(measure(*depth_mm)); },
+        [=, &truth_mm](auto& counters) {
+          bench::note_errors(counters, "depth", "mm", bench::errors_of(*depth_mm, truth_mm));
         });
   }
 
-  /// The rendered light does not depend on the Heights of the estimator.
-  template <class Smoothing, class Inverse, class S = float, class Heights = AstigmaticHeights>
-  void add(const std::string& name) const {
-    const auto free = scene.pad.frame<double>(scene.free_mm);
-    add_with<Inverse, Smoothing>(
-        name, fit_reference<Heights, S>(scene.pad.camera, scene.pad.fluid, free.red, free.green,
-                                        scene.free_mm));
+  template <class S>
+  void add_ours(const std::string& name, const DepthOptions& options = {}) const {
+    const auto reference = scene.pad.reference<S>();
+    const bench::Memory memory;
+    const auto estimate =
+        std::make_shared<DepthEstimator<S>>(scene.pad.camera, scene.pad.fluid, reference, options);
+    const auto status = std::make_shared<Image<PixelStatus>>(scene.pad.rows, scene.pad.cols);
+    add<S>(name, scene.pressed_mm, memory, [=, this](Image<S>& depth_mm) {
+      return (*estimate)(frame.red(), frame.green(), depth_mm, *status);
+    });
   }
 
-  /// g pixel by pixel, as published, from a noisy 8-bit frame that `Before` smooths first.
-  template <class Before, class Smoothing, class Inverse, class Heights, class S>
-  void add_quotient(const std::string& name) const {
+  template <int Step>
+  void add_samples(const std::string& name) const {
+    using Sampler = FrameSampler<std::uint8_t, Step>;
+    using Samples = Image<typename Sampler::Sample>;
+    const auto reference = sampled(scene.pad.reference<float>(), Step);
+    const bench::Memory memory;
+    const auto sampler = std::make_shared<Sampler>(scene.pad.cols);
+    const auto red = std::make_shared<Samples>(reference.rows, reference.cols);
+    const auto green = std::make_shared<Samples>(*red);
+    const auto estimate = std::make_shared<DepthEstimator<>>(
+        sampled(scene.pad.camera, Step), scene.pad.fluid, reference, DepthOptions{.step = Step});
+    const auto status = std::make_shared<Image<PixelStatus>>(reference.rows, reference.cols);
+    add<float>(name, mean_of_samples_mm, memory, [=, this](Image<float>& depth_mm) {
+      (void)sampler->band(0, red->rows(), frame.red(), frame.green(), red->view(), green->view());
+      return (*estimate)(*red, *green, depth_mm, *status);
+    });
+  }
+
+  void add_published(const std::string& name) const {
     const auto free = scene.pad.frame<std::uint8_t>(scene.free_mm, scene.noise, 2);
-    add_with<Inverse, Smoothing>(
-        name, published::depth_reference<S, Heights>(scene.pad.camera, scene.pad.fluid, free.red,
-                                                     free.green, scene.free_mm, Before()));
-  }
-
-  template <class Smoothing>
-  void add_fast(const std::string& name) const {
-    add<Smoothing, ExponentialFree<2, 5>>(name + " + ExponentialFree<2, 5>");
-    add<Smoothing, ExponentialFree<>>(name + " + ExponentialFree<>");
+    const bench::Memory memory;
+    const auto estimate = std::make_shared<published::DepthEstimator<>>(
+        scene.pad.published(), free.red, free.green, scene.free_mm);
+    add<double>(name, scene.pressed_mm, memory, [=, this](Image<double>& depth_mm) {
+      return (*estimate)(frame.red(), frame.green(), depth_mm);
+    });
   }
 
   void add_opencv() const {
@@ -83,27 +103,11 @@ struct Bench {
   }
 
   void add_all() const {
-    using Default = BiasFreeMean;
-    using published::Bisection;
-    using published::BoxMean;
-    using published::SingleHeight;
-    add_quotient<BoxMean, BoxMean, Bisection, SingleHeight, double>(
-        "published: BoxMean + Bisection in double");
-    add_quotient<NoSmoothing, BoxMean, Bisection, SingleHeight, double>(
-        "published, g of the raw reference");
-    add<BoxMean, Bisection, double, SingleHeight>("published, radial g");
-    add_fast<NoSmoothing>("NoSmoothing");
-    add_fast<published::BoxMean>("published::BoxMean");
-    add_fast<BiasFreeMean>("BiasFreeMean");
-    add_fast<AnchoredMean>("AnchoredMean");
-    add<Default, ExponentialFree<>, float, SingleHeight>("the default, SingleHeight");
-    add_quotient<BoxMean, Default, ExponentialFree<>, AstigmaticHeights, float>(
-        "the default, published::depth_reference");
-    add<Default, ExponentialFree<>, double>("the default in double");
-    add<Default, ExponentialFree<9, 12, 8>, double>(
-        "BiasFreeMean + ExponentialFree<9, 12, 8> in double");
-    add<Default, Newton, double>("BiasFreeMean + Newton in double");
-    add<Default, Newton>("BiasFreeMean + Newton");
+    add_published("published: BoxMean + Bisection in double");
+    add_ours<float>("NoSmoothing + ExponentialFree<>", {.window_px = 1});
+    add_ours<float>("BiasFreeMean + ExponentialFree<>");
+    add_ours<double>("the default in double");
+    add_samples<3>("samples of 3");
     bench::add_streaming(scene.name, scene.pixels());
     add_opencv();
   }

@@ -15,7 +15,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/optics/camera.hpp"
-#include "fingerpad/published/camera.hpp"
+#include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
 
@@ -33,6 +33,12 @@ void each_pixel(const Visit& visit) {
       visit(static_cast<std::size_t>(i * cols + j), S(i), S(j), S(1 + (i + j) % 12));
     }
   }
+}
+
+/// The same camera in the symbols of the slides, which neglect the plate.
+template <class S>
+published::Pinhole<S> pinhole_of(const Camera<S>& c) {
+  return {c.plate_distance_mm, c.refractive_index, c.center_y_px, c.center_x_px, c.pitch_mm};
 }
 
 /// Rays by the angles of Snell's law, as in the slides, through a plate of zero thickness.
@@ -112,35 +118,35 @@ struct Calls {
 
   Calls(const std::string& name, const CameraOf<double>& c) : row(name), camera(cast<S>(c)) {}
 
+  auto exact_heights() const {
+    return [e = exact](Long i, Long j, Long) { return pencil_heights(e, ray_at_pixel(e, i, j)); };
+  }
   void add_rays() const {
-    const auto truth = [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); };
-    const auto heights = [e = exact](Long i, Long j, Long) {
-      return pencil_heights(e, ray_at_pixel(e, i, j));
-    };
-    const auto add_heights = [&]<class Heights>(const std::string& name, Heights) {
-      add<S>(
-          "virtual heights/" + name, "height", "mm",
-          [c = camera](std::size_t, S i, S j, S) {
-            return Heights::heights(c, ray_at_pixel(c, i, j));
-          },
-          heights);
-    };
     add<S>(
         "ray/" + row, "path factor", "1",
-        [c = camera](std::size_t, S i, S j, S) { return ray_at_pixel(c, i, j); }, truth);
-    add_heights(row, AstigmaticHeights());
-    add_heights("SingleHeight, published, " + row, published::SingleHeight());
+        [c = camera](std::size_t, S i, S j, S) { return ray_at_pixel(c, i, j); },
+        [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
+    add<S>(
+        "virtual heights/" + row, "height", "mm",
+        [c = camera](std::size_t, S i, S j, S) { return pencil_heights(c, ray_at_pixel(c, i, j)); },
+        exact_heights());
   }
-  void add_published_rays() const {
+  void add_published() const {
+    const auto pinhole = pinhole_of(camera);
+    add<S>(
+        "virtual heights/SingleHeight, published, " + row, "height", "mm",
+        [pinhole](std::size_t, S i, S j, S) {
+          const S h2 = published::ray_of(pinhole, i, j).h2_mm;
+          return PencilHeights<S>{h2, h2};
+        },
+        exact_heights());
     add<S>(
         "ray/published angles, " + row, "path factor", "1",
         [c = camera](std::size_t, S i, S j, S) { return ray_by_angles(c, i, j); },
         [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
-  }
-  void add_published_points(const std::string& name) const {
     add<S>(
-        "point/" + name, "point", "mm",
-        [c = camera](std::size_t, S i, S j, S z) { return published::point_at(c, i, j, z); },
+        "point/published sine, " + row, "point", "mm",
+        [pinhole](std::size_t, S i, S j, S z) { return published::point_at(pinhole, i, j, z); },
         [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
   }
   void add_points() const {
@@ -206,13 +212,11 @@ int main(int argc, char** argv) {
   single.add_rays();
   thick.add_rays();
   single_thick.add_rays();
-  thin.add_published_rays();
-  single.add_published_rays();
+  thin.add_published();
+  single.add_published();
   const auto add_points = [](const auto&... calls) { (calls.add_points(), ...); };
   const auto add_pixels = [](const auto&... calls) { (calls.add_pixels(), ...); };
   add_points(thin, single, thick, single_thick, heights, single_heights);
-  thin.add_published_points("published sine, double");
-  single.add_published_points("published sine, float");
   add_pixels(thin, single, thick, single_thick, heights, single_heights);
   add_all_opencv();
   return bench::run(argc, argv);

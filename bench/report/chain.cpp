@@ -264,11 +264,9 @@ ordered_json passes_of(const Options& options, const chain::PressedFrames& frame
   using Sampler = FrameSampler<std::uint8_t, step>;
   using Samples = test::Image<typename Sampler::Sample>;
   const auto reference = sampled(options.reference, step);
-  const DepthEstimator estimate(sampled(options.camera, step), options.fluid, reference,
-                                typename Methods::Smoothing{options.smoothing_px, step},
-                                typename Methods::Inverse{});
-  auto work = estimate.template workspace<typename Sampler::Sample>();
-  auto rows = Sampler::workspace(options.cols);
+  DepthEstimator estimate(sampled(options.camera, step), options.fluid, reference,
+                          {.window_px = options.smoothing_px, .step = step});
+  Sampler sampler(options.cols);
   test::Image<float> depth_mm(reference.rows, reference.cols);
   test::Image<PixelStatus> status(reference.rows, reference.cols);
   Samples red(reference.rows, reference.cols), green = red, copy = red;
@@ -276,9 +274,9 @@ ordered_json passes_of(const Options& options, const chain::PressedFrames& frame
     return StridedView<typename Sampler::Sample>(of.cells.data(), of.rows(), of.cols(), of.cols());
   };
   const auto sample = [&](const chain::Inputs& in) {
-    (void)Sampler::band(0, red.rows(), in.image.red, in.image.green, view(red), view(green), rows);
+    (void)sampler.band(0, red.rows(), in.image.red, in.image.green, view(red), view(green));
   };
-  const auto invert = [&] { (void)estimate(red, green, depth_mm, status, work); };
+  const auto invert = [&] { (void)estimate(red, green, depth_mm, status); };
   const auto median = [&](const auto& pass) {
     Times times;
     for (std::size_t k = 0; k < 400; ++k) {

@@ -232,8 +232,8 @@ together in
 
 Three chains. **default**: the policies by default, with the published iteration as solver of the
 six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
-a pad with dark dots cannot do without: `AnchoredMean`, `ExponentialFree<2, 5>`,
-no placed edge, in samples of 4 x 4 pixels where the others have 3 x 3.
+a pad with dark dots cannot do without: no placed edge, in samples of 4 x 4 pixels where the others
+have 3 x 3.
 
 ![Time of each stage](whole_chain/stages.png)
 

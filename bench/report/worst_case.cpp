@@ -114,18 +114,17 @@ std::vector<Kind> of_chain() {
 
 std::vector<Kind> of_depth() {
   const auto options = pressed().options();
-  static const DepthEstimator depth(options.camera, options.fluid, options.reference);
-  static auto work = depth.workspace<std::uint8_t>();
+  static DepthEstimator depth(options.camera, options.fluid, options.reference);
   static Image<float> to(480, 640);
   static const auto frames =
       made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
   return {{"a pressed pad",
            [](int k) {
              const auto& image = pressed()[variant(k)].image;
-             (void)depth(image.red, image.green, to, work);
+             (void)depth(image.red, image.green, to);
            }},
           {"an image of noise",
-           [](int k) { (void)depth(frames[variant(k)].red, frames[variant(k)].green, to, work); }}};
+           [](int k) { (void)depth(frames[variant(k)].red, frames[variant(k)].green, to); }}};
 }
 
 std::vector<Kind> of_contact_region() {

@@ -54,7 +54,7 @@ class SceneFrames {
     threshold_per_mm_ = calibration.fit().threshold_per_mm;
   }
 
-  SceneFrame make(const std::string& heights, std::uint64_t seed) const {
+  SceneFrame make(const std::string& heights, std::uint64_t seed) {
     const auto truth = scene_.depth(heights);
     const auto frame = scene_.frame(truth, seed);
     auto depth = test::estimate<float>(estimator_, frame).depth_mm;

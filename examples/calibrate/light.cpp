@@ -123,25 +123,18 @@ class DepthMeter {
       : estimate_(sensor.camera,
                   sensor.absorption,
                   reference_of(sensor, reference, free_mm),
-                  {window_px(sensor)}),
-        work_(estimate_.workspace<std::uint16_t>()) {}
+                  {.window_px = window_px(sensor)}) {}
 
   DepthMap operator()(const cv::Mat& frame) {
     const cv::Mat wide = in_16_bit(frame);
     DepthMap depth(frame.size());
     (void)estimate_(fingerpad::channel<std::uint16_t>(wide, 2),
-                    fingerpad::channel<std::uint16_t>(wide, 1), depth, work_);
+                    fingerpad::channel<std::uint16_t>(wide, 1), depth);
     return depth;
   }
 
  private:
-  using Estimator =
-      decltype(fingerpad::DepthEstimator(std::declval<fingerpad::Camera<double>>(),
-                                         std::declval<fingerpad::Absorption<double>>(),
-                                         reference_of({}, {}, {}),
-                                         fingerpad::BiasFreeMean{}));
-  Estimator estimate_;
-  typename Estimator::template Workspace<std::uint16_t> work_;
+  fingerpad::DepthEstimator<float> estimate_;
 };
 
 }  // namespace

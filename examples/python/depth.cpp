@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include "python/arrays.hpp"
@@ -38,18 +36,15 @@ Reference fit(const Camera<double>& camera,
   });
 }
 
-/// A depth estimator with its workspaces; calls from several threads are serialised.
+/// A depth estimator; calls from several threads are serialised.
 class Estimator {
-  using Method = fingerpad::DepthEstimator<>;
-  template <class Pixel>
-  using Workspace = std::optional<Method::Workspace<Pixel>>;
-
  public:
   Estimator(const Camera<double>& camera,
             const Absorption<double>& fluid,
             const Reference& reference,
             const Count& smoothing_px)
-      : estimate_(camera, fluid, reference, {count_of<int>(smoothing_px, "smoothing_px")}) {}
+      : estimate_(
+            camera, fluid, reference, {.window_px = count_of<int>(smoothing_px, "smoothing_px")}) {}
 
   Index rows() const { return estimate_.rows(); }
   Index cols() const { return estimate_.cols(); }
@@ -73,13 +68,9 @@ class Estimator {
       const auto r = view_of<Pixel>(red, "red"), g = view_of<Pixel>(green, "green");
       const py::gil_scoped_release release;
       const std::scoped_lock lock(mutex_);
-      auto& work = std::get<Workspace<Pixel>>(workspaces_);
-      if (!work) {
-        work.emplace(estimate_.workspace<Pixel>());
-      }
-      return estimate_(r, g, depths, statuses, *work);
+      return estimate_(r, g, depths, statuses);
     });
-    if (result.status == fingerpad::DepthStatus::refused) {
+    if (result.status == fingerpad::FrameStatus::refused) {
       throw py::value_error("red and green must have the reference's size, " +
                             std::to_string(rows()) + " x " + std::to_string(cols()));
     }
@@ -87,10 +78,8 @@ class Estimator {
   }
 
  private:
-  Method estimate_;
+  fingerpad::DepthEstimator<float> estimate_;
   std::mutex mutex_;
-  std::tuple<Workspace<std::uint8_t>, Workspace<std::uint16_t>, Workspace<float>, Workspace<double>>
-      workspaces_;
 };
 
 }  // namespace
@@ -103,7 +92,8 @@ void bind_depth(py::module_& module) {
       .def_readwrite("center_y_px", &Camera<double>::center_y_px)
       .def_readwrite("pitch_mm", &Camera<double>::pitch_mm)
       .def_readwrite("plate_thickness_mm", &Camera<double>::plate_thickness_mm)
-      .def_readwrite("plate_index", &Camera<double>::plate_index);
+      .def_readwrite("plate_index", &Camera<double>::plate_index)
+      .def_readwrite("pixel_aspect", &Camera<double>::pixel_aspect);
   bind_options<Absorption<double>>(module, "Absorption", "The fluid; see depth/absorption.hpp.")
       .def_readwrite("c_red_per_mm", &Absorption<double>::c_red_per_mm)
       .def_readwrite("c_green_per_mm", &Absorption<double>::c_green_per_mm)

@@ -15,7 +15,6 @@
 namespace replay {
 namespace {
 
-constexpr int published_window_px = 29;
 
 /// Empty for a dots-only recording, which does not need it.
 cv::Mat first_image_of(Recording& recording, const Options& options) {
@@ -33,11 +32,10 @@ std::unique_ptr<FingertipStep> fingertip_step_of(Recording& recording,
   if (recording.sensor.dots_only) {
     return nullptr;
   }
-  const auto window = recording.sensor.smoothing_px;
-  const Smoothing by_default = window ? Smoothing::anchored : Smoothing::none;
+  const int by_default = recording.sensor.smoothing_px.value_or(1);
   try {
-    return make_fingertip_step(recording, first_image, options.smoothing.value_or(by_default),
-                               window.value_or(published_window_px), initial_px);
+    return make_fingertip_step(recording, first_image, options.smoothing_px.value_or(by_default),
+                               initial_px);
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }

@@ -58,10 +58,6 @@ void add_live_options(CLI::App& app, replay::LiveOptions& live) {
 }
 
 void add_options(CLI::App& app, replay::Options& options, std::string& frames, bool& checks) {
-  static const std::map<std::string, replay::Smoothing> policies = {
-      {"none", replay::Smoothing::none},
-      {"box", replay::Smoothing::box},
-      {"anchored", replay::Smoothing::anchored}};
   app.add_option("RECORDING", options.recording, "folder of the recording")->required();
   const auto check = app.add_flag("--check", checks,
                                   "list the problems of the recording, one per line with the "
@@ -72,11 +68,10 @@ void add_options(CLI::App& app, replay::Options& options, std::string& frames, b
       "--raw", options.raw,
       "also write depth/NNNNNN.tiff (32-bit float, mm, NaN where invalid) and contact/NNNNNN.png "
       "(255 in contact, else 0)");
-  app.add_option_function<std::string>(
-         "--smoothing", [&](const std::string& name) { options.smoothing = policies.at(name); },
-         "none, box or anchored; default: anchored if sensor.json has smoothing_px, else none")
-      ->check(CLI::IsMember({"none", "box", "anchored"}))
-      ->option_text("POLICY");
+  app.add_option("--smoothing", options.smoothing_px,
+                 "width of the smoothing window, odd, 3 to 109, or 1: none; default: smoothing_px "
+                 "of sensor.json, else 1")
+      ->option_text("PX");
   app.add_option("--frames", frames,
                  "process frames A to B-1 only, counted from 0; A or B may be omitted")
       ->option_text("A:B");

@@ -25,7 +25,7 @@ Range within(const Range& range, int size, const std::filesystem::path& recordin
 struct Options {
   std::filesystem::path recording;
   std::filesystem::path out;
-  std::optional<Smoothing> smoothing;
+  std::optional<int> smoothing_px;  ///< empty: that of sensor.json, else 1
   Range range;
   std::optional<Range> files;  ///< frames that get their own files; empty: all
   bool raw = false;

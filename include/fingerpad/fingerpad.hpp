@@ -35,7 +35,6 @@
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
-#include "fingerpad/published/camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/contact_shift.hpp"
 #include "fingerpad/published/depth.hpp"

@@ -96,7 +96,7 @@ TEST_CASE("contact of finite-element membranes by noisy frames", "[contact_regio
   const test::Pad& pad = scene.pad();
   const auto free = scene.depth("free");
   const auto reference = scene.reference(free);
-  const DepthEstimator<> estimator(pad.camera, pad.fluid, reference);
+  DepthEstimator<> estimator(pad.camera, pad.fluid, reference);
   std::uint64_t seed = 0;
   const auto measured = [&](const Image<double>& truth) {
     return test::estimate<float>(estimator, scene.frame(truth, ++seed)).depth_mm;

@@ -88,7 +88,7 @@ TEST_CASE("wrench of another rubber, from rendered frames", "[wrench]") {
                                            {.stress_free_height_mm = test::rubber_cap_height_mm});
   WrenchOptions<double> options{.base_radius_mm = test::base_radius_mm,
                                 .side_dot_length_mm = test::rubber_dot_length_mm};
-  const test::RubberFrames frames;
+  test::RubberFrames frames;
   const ClampedRim law{.mooney_share = fit.mooney_share};
   const auto found = gain_from_frames(Wrench<BalancedRim>(border, options, {}, row, law), frames);
   const auto squares =

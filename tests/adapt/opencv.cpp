@@ -110,7 +110,7 @@ TEST_CASE("one channel of an interleaved image is a view without a copy", "[open
   CHECK(bytes.at<cv::Vec3b>(4, 3)[2] == 200);
 }
 
-TEST_CASE("a wrong type or channel is refused by name", "[opencv]") {
+TEST_CASE("an empty image, a wrong type and a missing channel are refused by name", "[opencv]") {
   cv::Mat bytes(4, 4, CV_8UC3);
   const cv::Mat& constant = bytes;
   CHECK_THROWS_AS(channel<std::uint16_t>(bytes, 0), parameter_error);
@@ -119,9 +119,14 @@ TEST_CASE("a wrong type or channel is refused by name", "[opencv]") {
   CHECK_THROWS_AS(channel<std::uint8_t>(bytes, 3), parameter_error);
   CHECK_THROWS_AS(channel<std::uint8_t>(bytes, -1), parameter_error);
   CHECK_NOTHROW(channel<std::uint8_t>(constant, 2));
-  try {
-    channel<std::uint8_t>(bytes, 3);
-  } catch (const parameter_error& error) {
-    CHECK(std::string(error.what()) == "channel: c = 3, must be in [0, image.channels())");
-  }
+  const auto refusal = [](cv::Mat image, int c) {
+    try {
+      channel<std::uint8_t>(image, c);
+    } catch (const parameter_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  CHECK(refusal(bytes, 3) == "channel: c = 3, must be in [0, image.channels())");
+  CHECK(refusal({}, 2) == "channel: pixels of the image = 0, must be > 0: was the image read?");
 }

@@ -43,11 +43,10 @@ S depth_after_fit(const test::Pad& pad,
   camera.center_x_px = p[5];
   camera.center_y_px = p[6];
   camera.pitch_mm = p[7];
-  const auto reference =
-      fit_reference<AstigmaticHeights, S>(camera, fluid, frame.red, frame.green, shape);
+  const auto reference = fit_reference<S>(camera, fluid, frame.red, frame.green, shape);
   const auto ray = ray_at_pixel(camera, S(static_cast<double>(row)), S(static_cast<double>(col)));
-  const S g = reference.scattering.at(S(square(ray.plate_rho_mm)));
-  return newton_depth(fluid, pencil_of(camera, ray), g, Colour<S>{S(seen.red), S(seen.green)})
+  return newton_depth(fluid, pencil_of(camera, ray), reference.g(row, col),
+                      Colour<S>{S(seen.red), S(seen.green)})
       .depth_mm;
 }
 

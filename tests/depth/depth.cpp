@@ -1,25 +1,784 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/published/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <limits>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "fingerpad/depth/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
+#include "support/refusal.hpp"
 
 using namespace fingerpad;
 using test::Dual;
 using test::Frame;
 using test::Image;
 using test::Pad;
+using test::refusal;
+
+// The reference of the free pad.
+
+namespace {
+
+/// Largest relative error of g where the reference knows the pad.
+template <class S>
+double worst_g(const Pad& pad, const DepthReference<S>& reference) {
+  double worst = 0;
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      if (reference.in_pad(i, j)) {
+        worst =
+            (std::max)(worst, std::abs(static_cast<double>(reference.g(i, j)) / pad.g(i, j) - 1));
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("the scattering of a frame without noise is found",
+                   "[reference]",
+                   float,
+                   double) {
+  using S = TestType;
+  Pad pad;
+  pad.scattering_loss = GENERATE(0.0, 0.05, 0.5);
+  const auto reference = pad.reference<S>();
+  // normal equations of a cubic lose four to five digits, which float still resolves
+  CHECK(worst_g(pad, reference) <= (std::is_same_v<S, float> ? 1e-6 : 1e-11));
+  // the residual comes from a difference of sums of squares, which loses half the digits
+  CHECK(static_cast<double>(reference.residual_rms) <= 57 * 1e-7);
+
+  const auto depth = pad.free_depths();
+  Index known = 0;
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      const double l = depth(i, j);
+      known += l > 0 ? 1 : 0;
+      REQUIRE(reference.in_pad(i, j) == (l >= 0));
+      REQUIRE(test::same_bits(reference.depth(i, j), S(l)));
+    }
+  }
+  CHECK(reference.pixels_used == known);
+  CHECK(known > 1000);
+}
+
+TEST_CASE("noise in the reference averages out", "[reference]") {
+  // The error of g of one pixel is about 2.3 % at 1 mm and 0.24 % at 12 mm per 0.034 grey levels.
+  // One level over 1500 pixels and four coefficients leaves 0.3 % on average, and a few times that
+  // at the rim, where g matters least.
+  const Pad pad;
+  const auto depth = pad.free_depths();
+  double inner = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto frame = pad.frame<std::uint8_t>(depth, 1, seed);
+    const auto reference = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth);
+    // 1 level of noise in red and green and the steps of 8 bit: 1.04 sqrt(kappa^2 + 1.07^2)
+    CHECK(reference.residual_rms == Approx(1.5).epsilon(0.1));
+    CHECK(worst_g(pad, reference) <= 0.2);
+    for (Index j = 20; j < 36; ++j) {
+      const auto g = static_cast<double>(reference.g(24, j));
+      inner = (std::max)(inner, std::abs(g / pad.g(24, j) - 1));
+    }
+  }
+  CHECK(inner <= 0.02);
+}
+
+TEST_CASE("the units of the grey scale do not matter", "[reference]") {
+  const Pad pad;
+  const auto depth = pad.free_depths();
+  auto frame = pad.frame<double>(depth, 1, 2);
+  const auto once = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth);
+  for (auto* channel : {&frame.red, &frame.green}) {
+    for (double& x : channel->cells) {
+      x *= 64;
+    }
+  }
+  const auto other = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth,
+                                   GreyScale{64, 0, 255 * 64});
+  for (std::size_t k = 0; k < once.scattering.size(); ++k) {
+    REQUIRE(test::same_bits(once.scattering[k], other.scattering[k]));
+  }
+  CHECK(once.residual_rms == other.residual_rms);
+}
+
+TEST_CASE("pixels without a colour or a depth take no part", "[reference]") {
+  const Pad pad;
+  auto depth = pad.free_depths();
+  auto frame = pad.frame<float>(depth);
+  const auto all = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth);
+  test::Random random(4);
+  Index left = 0;
+  for (std::size_t k = 0; k < depth.cells.size(); ++k) {
+    if (!(depth.cells[k] > 0)) {
+      continue;
+    }
+    switch (random.whole(0, 7)) {
+      case 0:
+        frame.red.cells[k] = 0;
+        break;
+      case 1:
+        frame.green.cells[k] = 255;
+        break;
+      case 2:
+        frame.red.cells[k] = static_cast<float>(test::nan);
+        break;
+      case 3:
+        depth.cells[k] = test::nan;
+        break;
+      case 4:
+        depth.cells[k] = -0.1;
+        break;
+      case 5:
+        depth.cells[k] = pad.fluid.max_depth_mm * 1.01;
+        break;
+      default:
+        ++left;
+    }
+  }
+  const auto some = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth);
+  CHECK(some.pixels_used == left);
+  CHECK(some.pixels_used < all.pixels_used);
+  CHECK(worst_g(pad, some) <= 1e-5);  // float colours
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      const double l = depth(i, j);
+      REQUIRE(some.in_pad(i, j) == (l >= 0 && l <= pad.fluid.max_depth_mm));
+    }
+  }
+}
+
+TEST_CASE("a reference that determines nothing is refused", "[reference]") {
+  const Pad pad;
+  const auto depth = pad.free_depths();
+  const auto frame = pad.frame<double>(depth);
+  const auto fit = [&](const Image<double>& l) {
+    return refusal([&] { fit_reference(pad.camera, pad.fluid, frame.red, frame.green, l); });
+  };
+  using Catch::Matchers::Contains;
+  using Catch::Matchers::StartsWith;
+  const std::string refused = "fit_reference: pixels with a known depth = ";
+  CHECK(fit(depth) == "accepted");
+  CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, test::nan)), StartsWith(refused + "0"));
+  CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 0)), StartsWith("fit_reference: deepest"));
+  CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 100)), StartsWith("fit_reference: share"));
+
+  // Four pixels at one radius do not determine g as a function of the radius.
+  Image<double> ring(pad.rows, pad.cols, test::nan);
+  for (const auto& [i, j] : {std::pair<Index, Index>{13, 27}, {34, 27}, {23, 17}, {24, 38}}) {
+    ring(i, j) = pad.free_depth(i, j);
+  }
+  CHECK_THAT(fit(ring), StartsWith(refused + "4"));
+  ring = Image<double>(pad.rows, pad.cols, test::nan);
+  for (Index j = 27; j < 30; ++j) {
+    ring(23, j) = pad.free_depth(23, j);
+  }
+  CHECK_THAT(fit(ring), StartsWith(refused + "3"));
+
+  const Image<double> narrow(pad.rows, pad.cols - 1, 50);
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, pad.fluid, narrow, frame.green, depth); }),
+             Contains("same size"));
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, pad.fluid, frame.red, narrow, depth); }),
+             Contains("same size"));
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, pad.fluid, frame.red, frame.green, narrow); }),
+             Contains("same size"));
+  Absorption<double> fluid = pad.fluid;
+  fluid.kappa = 0;
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, fluid, frame.red, frame.green, depth); }),
+             StartsWith("Absorption: kappa = 0"));
+}
+
+TEST_CASE("a refusal of depths of 0 outside of the pad tells their share", "[reference]") {
+  Pad pad;
+  const auto frame = pad.frame<double>(pad.free_depths());
+  Image<double> depth = pad.free_depths();
+  double pixels = 0, at_zero = 0;
+  for (double& l : depth.cells) {
+    at_zero += l == l ? 0 : 1;
+    pixels += 1;
+    l = l == l ? l : 0;
+  }
+  char share[40];
+  std::snprintf(share, sizeof share, "%.9g", at_zero / pixels);
+  CHECK_THAT(refusal([&] { fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth); }),
+             Catch::Matchers::StartsWith(
+                 "fit_reference: share of pixels at depth 0 = " + std::string(share) + ","));
+}
+
+TEST_CASE("a pad is judged off the axis only if its whole outline is in the image", "[reference]") {
+  // A square pad of 20 x 20 pixels; only inside the image is its center known.
+  const auto off_axis = [](Index top, Index left) {
+    test::Image<double> depth(60, 80, not_a_number<double>());
+    for (Index i = top; i < top + 20; ++i) {
+      for (Index j = left; j < left + 20; ++j) {
+        depth(i, j) = 5;
+      }
+    }
+    Camera<double> camera;
+    camera.center_x_px = 39.5;
+    camera.center_y_px = 29.5;
+    return detail::shape_of_free_pad(camera, 14, depth).off_axis;
+  };
+  CHECK(off_axis(20, 30) == 0);
+  const double radius_px = 20 / std::sqrt(std::numbers::pi);
+  CHECK(off_axis(1, 30) == Approx(19 / radius_px));
+  CHECK(off_axis(39, 30) == Approx(19 / radius_px));
+  CHECK(off_axis(20, 1) == Approx(29 / radius_px));
+  CHECK(off_axis(20, 59) == Approx(29 / radius_px));
+  for (const auto& [top, left] : {std::pair(0, 30), {40, 30}, {20, 0}, {20, 60}}) {
+    CHECK(off_axis(top, left) == 0);
+  }
+}
+
+TEST_CASE("the rim is the part of the pad up to a fifth of its depth", "[reference]") {
+  DepthReference<double> reference;
+  reference.rows = 1;
+  reference.cols = 5;
+  reference.depth_mm = {10, 2, 2.01, 0, test::nan};
+  reference.rim_green = 100;
+  const Image<double> light(1, 5, 50);
+  const auto sum = detail::Rim(reference).light(0, 1, as_view(light), as_view(light), GreyScale{});
+  CHECK(sum.pixels == 2);
+  CHECK(sum.lit == 2);
+  CHECK(sum.sum == 1);
+}
+
+// Averaged colours, against means that sum every window anew.
+
+namespace {
+
+namespace bound {
+// Roundoff in grey levels of up to 255, with weights of two windows that sum to less than 2.5.
+constexpr double single = 2.5 * 255 * 4 * 1.2e-7;
+constexpr double twice = 2.5 * 255 * 1e3 * 2.3e-16;  // running sums of up to 1e3 pixels
+constexpr double residual_step = 2.5 / 256;          // residuals are stored in steps of 1/128
+}  // namespace bound
+
+/// A random frame of a random pad, wide enough for whole SIMD vectors and a remainder. Valid levels
+/// are 20 to 230, whose residuals are below the 256 levels that 16 bits hold.
+template <class Pixel, class S>
+struct Scene {
+  Camera<double> camera = Pad().camera;
+  Absorption<double> fluid;
+  GreyScale scale = grey_scale_of<Pixel>();
+  detail::PadArea area;
+  DepthReference<S> reference;
+  Frame<Pixel> frame{0, 0};  ///< of the area
+
+  Scene(Index rows, Index cols) : area{2, 3, rows, cols}, frame(rows, cols) {
+    reference.rows = rows + area.row + 1;
+    reference.cols = cols + area.col + 2;
+    const auto size = static_cast<std::size_t>(reference.rows * reference.cols);
+    reference.depth_mm.assign(size, S(0));
+    reference.scattering.assign(size, S(0.0163));
+  }
+
+  /// Some pixels are outside the pad, without g or gain, bad, or exactly on a limit.
+  Scene() : Scene(test::whole(1, 14), test::whole(1, 36)) {
+    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+    fluid.kappa = random.uniform(0.95, 1.05);
+    // eighths, so that a float pixel can lie exactly on a limit
+    scale.dark = scale.units_per_level * static_cast<double>(test::whole(160, 240)) / 8;
+    scale.saturated = scale.units_per_level * static_cast<double>(test::whole(1600, 1840)) / 8;
+    const double bad = test::uniform(0, 1);
+    const double inside = test::uniform(0.3, 1);
+    const bool has_gain = test::whole(0, 1) == 1;
+    const double bad_gain[] = {0, -1, test::nan};
+    for (std::size_t k = 0; k < reference.depth_mm.size(); ++k) {
+      const bool is_inside = random.uniform() < inside;
+      reference.depth_mm[k] = is_inside ? S(random.uniform(0, 3)) : not_a_number<S>();
+      const double g[] = {0, -0.01, test::nan, 0.0163};
+      reference.scattering[k] = S(random.uniform() < 0.1 ? g[random.whole(0, 3)] : 0.015);
+      if (has_gain) {
+        reference.red_gain.push_back(
+            S(random.uniform() < 0.05 ? bad_gain[random.whole(0, 2)] : random.uniform(0.9, 1.05)));
+      }
+    }
+    for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+      const auto level = [&] {
+        const double x = random.uniform() < bad ? random.uniform(0, 255) : random.uniform(60, 190);
+        return random.uniform() < 0.02 ? scale.dark / scale.units_per_level : x;
+      };
+      frame.red.cells[k] = test::stored<Pixel>(level());
+      frame.green.cells[k] = test::stored<Pixel>(level());
+      if (!std::is_integral_v<Pixel> && random.uniform() < bad / 3) {
+        frame.red.cells[k] = static_cast<Pixel>(test::nan);
+      }
+    }
+  }
+
+  /// The averaged colours of every row.
+  Frame<S> averaged(int window_px) const {
+    Frame<S> out(area.rows, area.cols);
+    detail::ColourRows<S> rows(camera, fluid, reference, area, window_px, 1);
+    const auto red = as_view(frame.red);
+    const auto green = as_view(frame.green);
+    rows.start(red, green, scale, 0);
+    for (Index i = 0; i < area.rows; ++i) {
+      rows.next(red, green, scale, &out.red(i, 0), &out.green(i, 0));
+    }
+    return out;
+  }
+
+  double red(Index i, Index j) const {
+    const auto gain = static_cast<double>(reference.gain(area.row + i, area.col + j));
+    return static_cast<double>(frame.red(i, j)) / scale.units_per_level * gain;
+  }
+  double green(Index i, Index j) const {
+    return static_cast<double>(frame.green(i, j)) / scale.units_per_level;
+  }
+  bool is_used(Index i, Index j) const {
+    const Index row = area.row + i, col = area.col + j;
+    return reference.in_pad(row, col) && reference.g(row, col) > S(0) &&
+           reference.gain(row, col) > S(0);
+  }
+  bool counts(Index i, Index j) const {
+    const auto lies_between = [&](Pixel x) {
+      return static_cast<double>(x) > scale.dark && static_cast<double>(x) < scale.saturated;
+    };
+    return is_used(i, j) && lies_between(frame.red(i, j)) && lies_between(frame.green(i, j));
+  }
+  /// exp(delta k l0) and g W(l0) of a pixel.
+  std::pair<double, double> anchor(Index i, Index j) const {
+    const Index row = area.row + i, col = area.col + j;
+    const auto pencil =
+        pencil_of(camera, ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col)));
+    const auto l = static_cast<double>(reference.depth(row, col));
+    const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+    return {std::exp(delta * pencil.path_factor * l),
+            static_cast<double>(reference.g(row, col)) *
+                scattered_light(l, fluid.c_red_per_mm, pencil)};
+  }
+  double residual(Index i, Index j) const {
+    const auto [rise, scattered] = anchor(i, j);
+    return rise * green(i, j) - fluid.kappa * red(i, j) + scattered;
+  }
+
+  /// Mean of f over the pixels of a window that count; NaN where there are none.
+  template <class F>
+  double window_mean(Index row, Index col, int window, const F& f) const {
+    double sum = 0;
+    double count = 0;
+    const Index r = window / 2;
+    for (Index i = (std::max)(row - r, Index(0)); i <= (std::min)(row + r, area.rows - 1); ++i) {
+      for (Index j = (std::max)(col - r, Index(0)); j <= (std::min)(col + r, area.cols - 1); ++j) {
+        if (counts(i, j)) {
+          sum += f(i, j);
+          count += 1;
+        }
+      }
+    }
+    return sum / count;
+  }
+
+  /// What averaged() must give, with windows and weights as documented.
+  Colour<double> expected(Index i, Index j, int window_px) const {
+    const double nan = test::nan;
+    if (window_px == 1) {
+      return counts(i, j) ? Colour<double>{red(i, j), green(i, j)} : Colour<double>{nan, nan};
+    }
+    const auto odd_near = [](double x) { return 2 * static_cast<int>(std::floor(x / 2)) + 1; };
+    const int in = odd_near(1.4 * window_px), out = odd_near(2.3 * window_px);
+    const double b = static_cast<double>(in * in - 1) / (out * out - in * in);
+    const auto of_green = [&](Index p, Index q) { return green(p, q); };
+    const auto of_residual = [&](Index p, Index q) { return residual(p, q); };
+    const double mean_green = window_mean(i, j, in, of_green);
+    const double mean_residual =
+        (1 + b) * window_mean(i, j, in, of_residual) - b * window_mean(i, j, out, of_residual);
+    const auto [rise, scattered] = anchor(i, j);
+    return {(rise * mean_green + scattered - mean_residual) / fluid.kappa, mean_green};
+  }
+};
+
+bool near(double a, double b, double bound) {
+  return a != a ? b != b : std::abs(a - b) <= bound;
+}
+
+template <class Pixel, class S>
+void compare_with_windows() {
+  const Scene<Pixel, S> scene;
+  const int window_px = test::whole(0, 3) == 0 ? 1 : 3 + 2 * static_cast<int>(test::whole(0, 6));
+  const auto out = scene.averaged(window_px);
+  const bool single = std::is_same_v<S, float>;
+  const bool whole = window_px > 1 && single && std::is_integral_v<Pixel>;
+  const double rounding = single ? bound::single : bound::twice;
+  for (Index i = 0; i < scene.area.rows; ++i) {
+    for (Index j = 0; j < scene.area.cols; ++j) {
+      const auto red = static_cast<double>(out.red(i, j));
+      const auto green = static_cast<double>(out.green(i, j));
+      // beside the pad a window may hold pixels that count, but there is no depth
+      if (scene.is_used(i, j)) {
+        const auto expected = scene.expected(i, j, window_px);
+        RC_ASSERT(near(green, expected.green, rounding));
+        RC_ASSERT(near(red, expected.red,
+                       (window_px > 1 ? 3 : 1) * rounding + (whole ? bound::residual_step : 0)));
+      } else {
+        RC_ASSERT(window_px > 1 || (red != red && green != green));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a smoothed colour is the mean over the valid pixels of the window", "[smoothing]") {
+  rc::prop("8 bit", compare_with_windows<std::uint8_t, float>);
+  rc::prop("16 bit", compare_with_windows<std::uint16_t, float>);
+  rc::prop("float", compare_with_windows<float, float>);
+  rc::prop("double", compare_with_windows<double, double>);
+  rc::prop("8 bit in double", compare_with_windows<std::uint8_t, double>);
+}
+
+TEST_CASE("the mean over whole windows has the bits of OpenCV's box filter", "[smoothing]") {
+  rc::prop("for green, which one window averages", [] {
+    Scene<std::uint8_t, float> scene(61, 93);
+    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+    for (std::size_t k = 0; k < scene.frame.red.cells.size(); ++k) {
+      scene.frame.red.cells[k] = static_cast<std::uint8_t>(random.whole(1, 254));
+      scene.frame.green.cells[k] = static_cast<std::uint8_t>(random.whole(1, 254));
+    }
+    const int window_px = 3 + 2 * static_cast<int>(test::whole(0, 13));
+    const int inner = detail::two_windows(window_px, 1)[0];
+    const auto ours = scene.averaged(window_px);
+    cv::Mat_<std::uint8_t> green(61, 93, scene.frame.green.cells.data());
+    cv::Mat_<float> theirs;
+    cv::boxFilter(green, theirs, CV_32F, cv::Size(inner, inner));
+    for (int i = inner / 2; i < 61 - inner / 2; ++i) {
+      for (int j = inner / 2; j < 93 - inner / 2; ++j) {
+        RC_ASSERT(ours.green(i, j) == theirs(i, j));
+      }
+    }
+  });
+}
+
+TEST_CASE("the bias-free mean leaves a quadratic deviation as it is", "[smoothing]") {
+  rc::prop("wherever both windows are whole", [] {
+    // on the plate F is green - kappa red
+    Scene<double, double> scene(40, 40);
+    scene.fluid.kappa = 1;
+    double c[7];
+    for (double& x : c) {
+      x = test::uniform(-1, 1);
+    }
+    for (Index i = 0; i < 40; ++i) {
+      for (Index j = 0; j < 40; ++j) {
+        const double y = static_cast<double>(i - 20) / 20;
+        const double x = static_cast<double>(j - 20) / 20;
+        scene.frame.red(i, j) = 100 + c[0] * x + c[1] * y + 9 * (c[2] * x * x + c[3] * y * y);
+        scene.frame.green(i, j) = 100 + 9 * (c[4] * x * y + c[5] * x * x + c[6] * y * y);
+      }
+    }
+    const auto out = scene.averaged(7);
+    for (Index i = 8; i < 32; ++i) {
+      for (Index j = 8; j < 32; ++j) {
+        const double deviation = scene.frame.green(i, j) - scene.frame.red(i, j);
+        RC_ASSERT(near(out.green(i, j) - out.red(i, j), deviation, bound::twice));
+        // the bias of one window is curvature times (w^2 - 1) / 12, w = 9
+        const double bias = 9 * (c[5] + c[6]) / 400 * (81 - 1) / 12;
+        RC_ASSERT(near(out.green(i, j), scene.frame.green(i, j) + bias, bound::twice));
+      }
+    }
+  });
+}
+
+TEST_CASE("the bias-free mean has the noise of a box of its name", "[smoothing]") {
+  // 1.4 and 2.3 times the window: a^2/1.96 - 2ab/5.29 + b^2/5.29 = 1.01 for large windows.
+  CHECK(detail::two_windows(29, 1) == std::array<int, 2>{41, 67});
+  Scene<double, double> scene(135, 135);
+  scene.frame.red.cells.assign(scene.frame.red.cells.size(), 100);
+  scene.frame.green.cells.assign(scene.frame.green.cells.size(), 100);
+  const auto before = scene.averaged(29);
+  scene.frame.red(67, 67) += 1;
+  const auto after = scene.averaged(29);
+  double sum = 0, second = 0, variance = 0;
+  for (Index i = 0; i < 135; ++i) {
+    for (Index j = 0; j < 135; ++j) {
+      const double weight = after.red(i, j) - before.red(i, j);
+      sum += weight;
+      second += weight * square(static_cast<double>(i - 67));
+      variance += square(weight);
+    }
+  }
+  CHECK(sum == Approx(1));
+  CHECK(second == Approx(0).margin(1e-6));  // of 70 for a box
+  CHECK(variance * 29 * 29 == Approx(1).epsilon(0.05));
+}
+
+TEST_CASE("windows in samples are as wide on the pad, and never below three samples",
+          "[smoothing]") {
+  for (const int window_px : {7, 29, 61}) {
+    for (const int step : {2, 3, 4}) {
+      CAPTURE(window_px, step);
+      const auto whole = detail::two_windows(window_px, 1);
+      const auto sampled = detail::two_windows(window_px, step);
+      for (std::size_t k = 0; k < 2; ++k) {
+        const int least = 3 + 2 * static_cast<int>(k);
+        CHECK(sampled[k] % 2 == 1);
+        CHECK(sampled[k] >= least);
+        CHECK((sampled[k] == least || std::abs(sampled[k] * step - whole[k]) <= step + 1));
+      }
+    }
+  }
+}
+
+namespace {
+
+/// Error of an estimator on the free pad, rim included, in mm.
+template <class Pixel, class S>
+double free_pad_error(const Pad& pad, int window_px) {
+  const auto depth = pad.free_depths();
+  auto estimator = pad.estimator<S>({.window_px = window_px});
+  return test::largest_error(test::estimate(estimator, pad.frame<Pixel>(depth)).depth_mm, depth);
+}
+
+/// Means of a channel over windows of the pad.
+Image<double> box_mean(const Image<double>& channel, const Image<double>& free_mm, Index window) {
+  Image<double> mean(channel.rows(), channel.cols());
+  for (Index i = 0; i < channel.rows(); ++i) {
+    for (Index j = 0; j < channel.cols(); ++j) {
+      double sum = 0, count = 0;
+      for (Index p = (std::max)(i - window / 2, Index(0));
+           p <= (std::min)(i + window / 2, channel.rows() - 1); ++p) {
+        for (Index q = (std::max)(j - window / 2, Index(0));
+             q <= (std::min)(j + window / 2, channel.cols() - 1); ++q) {
+          const bool inside = free_mm(p, q) == free_mm(p, q);
+          sum += inside ? channel(p, q) : 0;
+          count += inside ? 1 : 0;
+        }
+      }
+      mean(i, j) = sum / count;
+    }
+  }
+  return mean;
+}
+
+}  // namespace
+
+TEST_CASE("smoothing leaves the free pad as it is, rim and printed dots included", "[smoothing]") {
+  Pad pad;
+  pad.sphere_radius_mm = GENERATE(19.0, 20.0, 40.0);  // the first is steep at the rim
+  const int window_px = GENERATE(3, 9, 21);
+  // Double: roundoff. Float: roundoff of 57 grey levels, where F rises by 1.3 per mm; the first
+  // pixels of the rim are the least accurate. 16 bit: residuals of half of 1/128 grey level, if all
+  // have the same sign.
+  CHECK(free_pad_error<double, double>(pad, window_px) <= 1e-10);
+  CHECK(free_pad_error<float, float>(pad, window_px) <= 3e-5);
+  CHECK(free_pad_error<std::uint16_t, float>(pad, window_px) <= 2.2 * 3e-3);
+}
+
+TEST_CASE("a plain mean does not", "[smoothing]") {  // otherwise the test above would prove nothing
+  const Pad pad;
+  const auto depth = pad.free_depths();
+  auto frame = pad.frame<double>(depth);
+  frame.red = box_mean(frame.red, depth, 9);
+  frame.green = box_mean(frame.green, depth, 9);
+  const auto e = test::estimate(pad.estimator<double>({.window_px = 1}), frame);
+  CHECK(test::largest_error(e.depth_mm, depth) > 0.3);
+}
+
+TEMPLATE_TEST_CASE("what an invalid pixel holds changes no depth",
+                   "[smoothing]",
+                   std::uint8_t,
+                   std::uint16_t,
+                   float) {
+  rc::prop("to the last bit, with windows and without", [] {
+    using Pixel = TestType;
+    const Pad pad;
+    const auto depth = pad.pressed_depths(3);
+    auto frame = pad.frame<Pixel>(depth, 1, 11);
+    auto other = frame;
+    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+    const double share = test::uniform(0, 0.9);
+    const auto bad = [&]() -> Pixel {
+      const Pixel kinds[] = {Pixel(0), test::stored<Pixel>(255), Pixel(test::stored<Pixel>(255.5))};
+      if (std::is_integral_v<Pixel> || random.uniform() < 0.3) {
+        return kinds[random.whole(0, 2)];
+      }
+      using Limits = std::numeric_limits<Pixel>;
+      const Pixel more[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                            (Limits::max)(), Pixel(-3)};
+      return more[random.whole(0, 4)];
+    };
+    const auto spoil = [&](Frame<Pixel>& f, std::size_t k, bool first) {
+      (first ? f.red : f.green).cells[k] = bad();
+      (first ? f.green : f.red).cells[k] = test::stored<Pixel>(random.uniform(1, 300));
+    };
+    for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+      const bool outside = depth.cells[k] != depth.cells[k];
+      if (outside || random.uniform() < share) {
+        spoil(frame, k, random.uniform() < 0.5);
+        spoil(other, k, random.uniform() < 0.5);
+      }
+    }
+    for (const int window_px : {1, 3, 5}) {
+      auto estimator = pad.estimator<float>({.window_px = window_px});
+      const auto first = test::estimate(estimator, frame).depth_mm;
+      RC_ASSERT(test::same_bits(first, test::estimate(estimator, other).depth_mm));
+    }
+  });
+}
+
+// The solution by polynomials.
+
+namespace {
+
+/// The solver of a pad for the pixels up to its rim.
+template <class S>
+struct Solver {
+  Pad pad;
+  double radius_px;
+  detail::DepthPolynomial<S> rows;
+
+  explicit Solver(double delta_per_mm = 0.0046, double aspect = 1)
+      : pad(with(delta_per_mm, aspect)),
+        radius_px(pad.base_radius_mm() / pad.camera.pitch_mm + 1),
+        rows(pad.camera, pad.fluid, radius_px, 0.8 * pad.scattering) {}
+
+ private:
+  static Pad with(double delta_per_mm, double aspect) {
+    Pad pad;
+    pad.fluid.c_green_per_mm = pad.fluid.c_red_per_mm + delta_per_mm;
+    pad.camera.pixel_aspect = aspect;
+    return pad;
+  }
+};
+
+/// Whether two numbers are both NaN, or at most so many numbers of their type apart.
+template <class S>
+bool within_ulps(S a, S b, int ulps) {
+  using Bits = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
+  if (a != a || b != b) {
+    return a != a && b != b;
+  }
+  if (a == b || std::signbit(a) != std::signbit(b)) {
+    return a == b;
+  }
+  const Bits apart = std::bit_cast<Bits>(a) - std::bit_cast<Bits>(b);
+  return apart >= -ulps && apart <= ulps;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one",
+                   "[depth]",
+                   float,
+                   double) {
+  using S = TestType;
+  using Limits = std::numeric_limits<S>;
+  constexpr auto block = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
+  const Solver<S> solver(0.0046, 1.2);
+  test::Random random(31);
+  const S odd[] = {Limits::quiet_NaN(),
+                   Limits::infinity(),
+                   -Limits::infinity(),
+                   S(0),
+                   S(-0.0),
+                   Limits::denorm_min(),
+                   S(-3),
+                   S(1e30),
+                   S(-1e30),
+                   (Limits::max)(),
+                   S(255)};
+  const auto any = [&](double low, double high) {
+    return random.uniform() < 0.04 ? odd[random.whole(0, 10)] : S(random.uniform(low, high));
+  };
+  std::array<S, block> red, green, per_g, depth;
+  std::array<PixelStatus, block> status;
+  std::array<Index, pixel_status_count> seen = {};
+  for (std::size_t n = 0; n < 1000000; n += block) {
+    const int row = static_cast<int>(random.whole(0, solver.pad.rows - 1));
+    const int col = static_cast<int>(random.whole(0, solver.pad.cols - 1));
+    for (std::size_t i = 0; i < block; ++i) {
+      green[i] = any(0, 120);
+      red[i] = any(0, 1) * S(40) + green[i];
+      per_g[i] = random.uniform() < 0.05 ? S(random.whole(-1, 0)) : any(50, 76);
+      if (random.uniform() < 0.02) {  // colours that a mean with negative weights may have
+        green[i] = any(-2000, 0);
+        red[i] = green[i] * S(random.uniform(0.98, 1.02));
+      }
+    }
+    solver.rows.invert(row, col, red.data(), green.data(), per_g.data(), depth.data(),
+                       status.data());
+    for (std::size_t i = 0; i < block; ++i) {
+      const S u = solver.rows.radius_sq(row, col + static_cast<int>(i));
+      const auto root = solver.rows.root(u, red[i], green[i], per_g[i]);
+      const PixelStatus expected = !(per_g[i] > 0)             ? PixelStatus::outside_pad
+                                   : root.target < 0           ? PixelStatus::below_range
+                                   : root.target > root.total  ? PixelStatus::above_range
+                                   : root.target <= root.total ? PixelStatus::ok
+                                                               : PixelStatus::not_a_number;
+      const S expected_mm = expected == PixelStatus::ok ? root.depth_mm : Limits::quiet_NaN();
+      if (status[i] != expected || !within_ulps(depth[i], expected_mm, 2)) {
+        CAPTURE(u, red[i], green[i], per_g[i], depth[i], expected_mm);
+        CAPTURE(static_cast<int>(status[i]), static_cast<int>(expected));
+        FAIL("a block differs from its pixels");
+      }
+      ++seen[static_cast<std::size_t>(status[i])];
+    }
+  }
+  for (const PixelStatus s : {PixelStatus::ok, PixelStatus::below_range, PixelStatus::above_range,
+                              PixelStatus::not_a_number, PixelStatus::outside_pad}) {
+    CHECK(seen[static_cast<std::size_t>(s)] > 1000);
+  }
+}
+
+TEMPLATE_TEST_CASE("a root is that of Newton's method", "[depth]", float, double) {
+  using S = TestType;
+  const double delta_per_mm = GENERATE(0.0, 1e-4, 0.0046);
+  const double aspect = GENERATE(1.0, 1.3);
+  const Solver<S> solver(delta_per_mm, aspect);
+  const Pad& pad = solver.pad;
+  const double top = pad.fluid.max_depth_mm;
+  test::Random random(32);
+  double worst = 0;
+  int found = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const Index row = random.whole(0, pad.rows - 1), col = random.whole(0, pad.cols - 1);
+    if (pad.ray(row, col).plate_rho_mm > pad.base_radius_mm()) {
+      continue;
+    }
+    const S per_g = S(1 / (pad.scattering * random.uniform(0.8, 1.2)));
+    const double g = 1 / static_cast<double>(per_g);
+    const double bright = random.uniform(0.4, 1) * pad.brightness;
+    const auto c =
+        colour_at_depth(pad.fluid, pad.pencil(row, col), bright, g, random.uniform(0, top));
+    const S red = S(c.red), green = S(c.green);
+    // of the rounded colours
+    const auto newton =
+        newton_depth(pad.fluid, pad.pencil(row, col), g,
+                     Colour<double>{static_cast<double>(red), static_cast<double>(green)});
+    if (newton.status != PixelStatus::ok || newton.depth_mm < 1e-4 ||
+        newton.depth_mm > top - 1e-4) {
+      continue;  // the ends of the range have a test of their own
+    }
+    const S u = solver.rows.radius_sq(static_cast<int>(row), static_cast<int>(col));
+    const auto root = solver.rows.root(u, red, green, per_g);
+    REQUIRE((root.target >= 0 && root.target <= root.total));
+    worst = (std::max)(worst, std::abs(static_cast<double>(root.depth_mm) - newton.depth_mm));
+    ++found;
+  }
+  const double bound = std::is_same_v<S, float> ? 1e-5 : 1e-12;
+  CAPTURE(worst / bound);
+  CHECK(worst <= bound);
+  CHECK(found > 10000);
+}
+
+// The estimator.
 
 namespace {
 
@@ -85,13 +844,6 @@ PixelStatus reason(const Pixel& red, const Pixel& green) {
   return red >= top || green >= top ? PixelStatus::saturated : PixelStatus::dark;
 }
 
-/// Windows of the policy's mean, and the weight of the first.
-struct Windows {
-  Index inner;
-  Index outer;
-  double weight;
-};
-
 }  // namespace
 
 TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as their windows",
@@ -103,14 +855,15 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
   const Pad pad = fine_pad();
   const auto truth = pad.free_depths();
   Index lost = 0;
-  // Window 5 of the bias-free mean: 7 and 11 pixels, weights 120/72 and -48/72.
-  const auto check = [&](const auto& smoothing, const Windows& w, std::uint64_t seed) {
-    using Smoothing = std::remove_cvref_t<decltype(smoothing)>;
-    const auto estimator = pad.estimator<Smoothing, ExponentialFree<>, float>(smoothing);
+  // Window 5: 7 and 11 pixels, weights 120/72 and -48/72.
+  constexpr Index inner = 3, outer = 5;
+  constexpr double weight = 120.0 / 72;
+  auto estimator = pad.estimator<float>({.window_px = 5});
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     auto frame = pad.frame<Pixel>(truth, 1, seed);
     test::Random random(seed);
     const auto bad = spoil_in_clumps(frame, 0.2, random);
-    const auto e = test::estimate<float>(estimator, frame);
+    const auto e = test::estimate(estimator, frame);
     for (Index i = 0; i < pad.rows; ++i) {
       for (Index j = 0; j < pad.cols; ++j) {
         const double l = truth(i, j);
@@ -128,13 +881,13 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
           continue;
         }
         double n[2] = {0, 0};
-        for (Index p = (std::max)(i - w.outer, Index(0));
-             p <= (std::min)(i + w.outer, pad.rows - 1); ++p) {
-          for (Index q = (std::max)(j - w.outer, Index(0));
-               q <= (std::min)(j + w.outer, pad.cols - 1); ++q) {
+        for (Index p = (std::max)(i - outer, Index(0)); p <= (std::min)(i + outer, pad.rows - 1);
+             ++p) {
+          for (Index q = (std::max)(j - outer, Index(0)); q <= (std::min)(j + outer, pad.cols - 1);
+               ++q) {
             if (bad(p, q) == 0 && truth(p, q) == truth(p, q)) {
               n[1] += 1;
-              n[0] += std::abs(p - i) <= w.inner && std::abs(q - j) <= w.inner ? 1 : 0;
+              n[0] += std::abs(p - i) <= inner && std::abs(q - j) <= inner ? 1 : 0;
             }
           }
         }
@@ -143,12 +896,12 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
           expect(status == reason(frame.red(i, j), frame.green(i, j)));
           continue;
         }
-        // The anchored mean of the free pad has no bias, so the error is noise alone: of 1 grey
+        // The mean of the free pad has no bias, so the error is noise alone: of 1 grey
         // level, and 1/12 more for the steps of 8 bit, in both channels (rise is below 1.15). The
         // bound is six standard deviations, which no pixel in 1e8 should exceed, and the steps of
         // 1/128 grey level of the stored residuals.
         const double sd =
-            std::sqrt(13.0 / 12 * (1.15 * 1.15 + 1) * variance_left(n[0], n[1], w.weight));
+            std::sqrt(13.0 / 12 * (1.15 * 1.15 + 1) * variance_left(n[0], n[1], weight));
         const double allowed = mm_per_level(pad, i, j, l) * (6 * sd + 1.0 / 128);
         if (status == PixelStatus::ok) {
           expect(std::abs(depth - l) <= 1.1 * allowed);
@@ -159,18 +912,13 @@ TEMPLATE_TEST_CASE("with a fifth of the pixels lost, the others are as good as t
         }
       }
     }
-  };
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    check(AnchoredMean{7}, {3, 3, 1}, seed);
-    check(BiasFreeMean{5}, {3, 5, 120.0 / 72}, seed);
   }
   CHECK(lost > 0);  // otherwise nothing was tested about them
 }
 
 TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   const Pad pad;
-  const auto estimator = pad.estimator<published::BoxMean, ExponentialFree<>, float>();
-  auto workspace = estimator.workspace<std::uint8_t>();
+  auto estimator = pad.estimator<float>();
   const auto good = pad.frame<std::uint8_t>(pad.free_depths());
   const Index r = pad.rows;
   const Index c = pad.cols;
@@ -179,7 +927,7 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
     const Image<std::uint8_t> green(r, green_cols, 50);
     Image<float> depth(depth_rows, c, -7);
     Image<PixelStatus> status(r, status_cols, PixelStatus::dark);
-    const auto result = estimator(red, green, depth, status, workspace);
+    const auto result = estimator(red, green, depth, status);
     CHECK_FALSE(result.ok());
     CHECK(result.valid_pixels() == 0);
     CHECK(depth.cells == Image<float>(depth_rows, c, -7).cells);
@@ -193,36 +941,38 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   const auto untouched = e;
   const std::pair<Index, Index> no_bands[] = {{-1, r}, {0, r + 1}, {4, 3}};
   for (const auto& [first, last] : no_bands) {
-    CHECK_FALSE(
-        estimator.band(first, last, good.red, good.green, e.depth_mm, e.status, workspace).ok());
+    CHECK_FALSE(estimator.band(first, last, good.red, good.green, e.depth_mm, e.status).ok());
   }
-  // the workspace of an estimator for another pad
-  auto foreign = fine_pad()
-                     .estimator<published::BoxMean, ExponentialFree<>, float>()
-                     .workspace<std::uint8_t>();
-  CHECK_FALSE(estimator(good.red, good.green, e.depth_mm, e.status, foreign).ok());
   CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
   CHECK(e.status.cells == untouched.status.cells);
-  // and the workspace remains usable
-  CHECK(estimator(good.red, good.green, e.depth_mm, workspace).ok());
+  // and the estimator remains usable
+  CHECK(estimator(good.red, good.green, e.depth_mm).ok());
 }
 
-TEST_CASE("threads may share an estimator and a frame", "[depth]") {
+TEMPLATE_TEST_CASE("threads may share a frame, each with a copy of the estimator",
+                   "[depth]",
+                   std::uint8_t,
+                   std::uint16_t,
+                   float) {
   const Pad pad = fine_pad();
-  auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
+  auto frame = pad.frame<TestType>(pad.pressed_depths(2), 1, 4);
   test::Random random(2);
   spoil_in_clumps(frame, 0.2, random);
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({9});
-  const auto alone = test::estimate<float>(estimator, frame);
+  const int window_px = GENERATE(1, 9);
+  auto estimator = pad.estimator<float>({.window_px = window_px});
+  const auto alone = test::estimate(estimator, frame);
+  const auto never_used = pad.estimator<float>({.window_px = window_px});
   test::Estimate<float> shared(pad.rows, pad.cols);
   std::vector<std::thread> threads;
   constexpr Index count = 4;
+  std::vector<DepthResult> results(count);
   for (Index k = 0; k < count; ++k) {
-    threads.emplace_back([&, k] {
-      auto workspace = estimator.workspace<std::uint8_t>();
+    // copies of one that has worked, and of one that has not
+    threads.emplace_back([&, k, own = k % 2 == 0 ? estimator : never_used]() mutable {
       for (int again = 0; again < 5; ++again) {
-        (void)estimator.band(k * pad.rows / count, (k + 1) * pad.rows / count, frame.red,
-                             frame.green, shared.depth_mm, shared.status, workspace);
+        results[static_cast<std::size_t>(k)] =
+            own.band(k * pad.rows / count, (k + 1) * pad.rows / count, frame.red, frame.green,
+                     shared.depth_mm, shared.status);
       }
     });
   }
@@ -231,14 +981,14 @@ TEST_CASE("threads may share an estimator and a frame", "[depth]") {
   }
   CHECK(test::same_bits(shared.depth_mm, alone.depth_mm));
   CHECK(shared.status.cells == alone.status.cells);
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    results[0].add(results[k]);
+  }
+  CHECK(results[0].status == alone.result.status);
+  CHECK(results[0].count == alone.result.count);
 }
 
-TEMPLATE_TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth",
-                   "[depth]",
-                   NoSmoothing,
-                   published::BoxMean,
-                   AnchoredMean,
-                   BiasFreeMean) {
+TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth", "[depth]") {
   const Pad pad = fine_pad();
   auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
   test::Random random(3);
@@ -251,36 +1001,52 @@ TEMPLATE_TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same de
     single.red.cells[k] = frame.red.cells[k];
     single.green.cells[k] = frame.green.cells[k];
   }
-  const auto estimator = pad.estimator<TestType, ExponentialFree<>, float>();
-  const auto e = test::estimate<float>(estimator, frame);
+  const int window_px = GENERATE(1, 5, 29);
+  auto estimator = pad.estimator<float>({.window_px = window_px});
+  const auto e = test::estimate(estimator, frame);
   const auto same = [&](const auto& other, double bound_mm) {
     CHECK(test::largest_error(other.depth_mm, e.depth_mm) <= bound_mm);
     CHECK(other.status.cells == e.status.cells);
   };
-  same(test::estimate<float>(estimator, deep), 1e-5);
+  same(test::estimate(estimator, deep), 1e-5);
   // float frames are averaged as they are, not in steps of 1/128 grey level: 2.2 (sum of the
   // weights) times half a step, at 0.75 mm per level
-  same(test::estimate<float>(estimator, single), TestType::anchored ? 2.2 / 256 * 0.75 : 5e-5);
+  same(test::estimate(estimator, single), window_px > 1 ? 2.2 / 256 * 0.75 : 5e-5);
 }
 
 TEST_CASE("every number type gives the same depth", "[depth]") {
   const Pad pad;
   const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 8);
+  const auto e = test::estimate(pad.estimator<double>({.window_px = 5}), frame);
+  const auto single = test::estimate(pad.estimator<float>({.window_px = 5}), frame);
+  // float works with residuals in steps of 1/128 grey level
+  CHECK(test::largest_error(single.depth_mm, e.depth_mm) <= 2.2 / 256 * 0.75);
+  // pixel by pixel in any other
+  const auto plain = test::estimate(pad.estimator<double>({.window_px = 1}), frame);
+  const auto reference = pad.reference<double>();
   const auto with = [&](auto s) {
     using S = decltype(s);
-    const auto e = test::estimate<S>(pad.estimator<BiasFreeMean, Newton, S>({5}), frame);
-    Image<double> depth(pad.rows, pad.cols);
-    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
-      depth.cells[k] = static_cast<double>(value(e.depth_mm.cells[k]));
+    Image<double> depth(pad.rows, pad.cols, test::nan);
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        if (reference.in_pad(i, j)) {
+          const auto light = pad.pencil(i, j);
+          const Pencil<S> pencil{S(light.path_factor),
+                                 {S(light.height.meridional_mm), S(light.height.sagittal_mm)}};
+          const auto root =
+              newton_depth(cast<S>(pad.fluid), pencil, S(reference.g(i, j)),
+                           Colour<S>{S(double(frame.red(i, j))), S(double(frame.green(i, j)))});
+          REQUIRE(root.status == plain.status(i, j));
+          depth(i, j) = static_cast<double>(value(root.depth_mm));
+        }
+      }
     }
     return depth;
   };
-  const auto in_double = with(double());
-  CHECK(test::largest_error(with(0.0L), in_double) <= 1e-11);
-  CHECK(test::largest_error(with(Dual<double>()), in_double) <= 1e-11);
-  CHECK(test::largest_error(in_double, with(Dual<double>())) <= 1e-11);
-  // float works with residuals in steps of 1/128 grey level
-  CHECK(test::largest_error(with(float()), in_double) <= 2.2 / 256 * 0.75);
+  for (const auto& depth : {with(0.0), with(0.0L), with(Dual<double>())}) {
+    CHECK(test::largest_error(depth, plain.depth_mm) <= 1e-11);
+    CHECK(test::largest_error(plain.depth_mm, depth) <= 1e-11);
+  }
 }
 
 namespace {
@@ -319,54 +1085,147 @@ TEST_CASE("a dual number carries the derivative of depth", "[depth]") {
       RC_ASSERT(test::relative_error(by_dual, by_difference) <= 1e-6);
     }
   });
-  SECTION("through the whole estimator") {
-    const Pad pad;
-    const auto depth = pad.pressed_depths(3);
-    const auto plain = pad.frame<double>(depth);
-    const bool of_red = GENERATE(true, false);
-    const double h = 1e-4;
-    Frame<D> seeded(pad.rows, pad.cols);
-    auto more = plain;
-    auto less = plain;
-    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
-      seeded.red.cells[k] = D(plain.red.cells[k], of_red ? 1 : 0);
-      seeded.green.cells[k] = D(plain.green.cells[k], of_red ? 0 : 1);
-      (of_red ? more.red : more.green).cells[k] += h;
-      (of_red ? less.red : less.green).cells[k] -= h;
-    }
-    using Smoothing = BiasFreeMean;
-    const auto dual = pad.estimator<Smoothing, Newton, D>({5});
-    const auto real = pad.estimator<Smoothing, Newton, double>({5});
-    const auto e = test::estimate<D>(dual, seeded);
-    const auto up = test::estimate<double>(real, more).depth_mm;
-    const auto down = test::estimate<double>(real, less).depth_mm;
-    double worst = 0;
-    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
-      if (depth.cells[k] > 0.5) {
-        const double difference = (up.cells[k] - down.cells[k]) / (2 * h);
-        worst = (std::max)(worst, test::relative_error(e.depth_mm.cells[k].d, difference));
+}
+
+TEST_CASE("the estimator takes g of each pixel", "[depth]") {
+  const Pad pad;
+  const auto depth = pad.pressed_depths(3);
+  auto reference = pad.reference<double>();
+  auto frame = pad.frame<double>(depth);
+  test::Random random(7);
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      if (reference.in_pad(i, j)) {
+        double& g = reference.scattering[static_cast<std::size_t>(i * pad.cols + j)];
+        g = pad.scattering * random.uniform(0.7, 1.3);
+        const auto c = colour_at_depth(pad.fluid, pad.pencil(i, j), 57.0, g, depth(i, j));
+        frame.red(i, j) = c.red;
+        frame.green(i, j) = c.green;
       }
     }
-    CHECK(worst <= 1e-6);
   }
+  DepthEstimator<double> estimator(pad.camera, pad.fluid, reference, {.window_px = 1});
+  CHECK(test::largest_error(test::estimate(estimator, frame).depth_mm, depth) <= 1e-10);
+  // a pixel without g has no depth
+  reference.scattering[static_cast<std::size_t>(24 * pad.cols + 28)] = 0;
+  DepthEstimator<double> without(pad.camera, pad.fluid, reference, {.window_px = 1});
+  const auto e = test::estimate(without, frame);
+  CHECK(e.status(24, 28) == PixelStatus::outside_pad);
+  CHECK(e.result.pad_pixels == test::estimate(estimator, frame).result.pad_pixels - 1);
+  CHECK(e.result.valid_pixels() == e.result.pad_pixels);
+}
+
+namespace {
+
+/// A gain of red that is another at every pixel.
+double gain_at(Index i, Index j) {
+  return 1 + 0.1 * std::sin(0.3 * static_cast<double>(i)) +
+         0.08 * std::cos(0.2 * static_cast<double>(j));
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("red divided by a gain at each pixel has the same depth with that gain",
+                   "[depth]",
+                   double,
+                   float,
+                   std::uint16_t) {
+  using Pixel = TestType;
+  using S = std::conditional_t<std::is_same_v<Pixel, double>, double, float>;
+  const Pad pad;
+  auto levels = pad.frame<double>(pad.pressed_depths(3), 1, 5);
+  const auto as_stored = [&] {
+    Frame<Pixel> frame(pad.rows, pad.cols);
+    for (std::size_t k = 0; k < levels.red.cells.size(); ++k) {
+      frame.red.cells[k] = test::stored<Pixel>(levels.red.cells[k]);
+      frame.green.cells[k] = test::stored<Pixel>(levels.green.cells[k]);
+    }
+    return frame;
+  };
+  const auto frame = as_stored();
+  auto reference = pad.reference<S>();
+  const int window_px = GENERATE(1, 29);
+  const auto depth_of = [&](const Frame<Pixel>& seen) {
+    DepthEstimator<S> estimator(pad.camera, pad.fluid, reference, {.window_px = window_px});
+    return test::estimate(estimator, seen);
+  };
+  const auto plain = depth_of(frame);
+  reference.red_gain.assign(reference.depth_mm.size(), S(1));
+  const auto with_one = depth_of(frame);
+  CHECK(test::same_bits(with_one.depth_mm, plain.depth_mm));
+  CHECK(with_one.status.cells == plain.status.cells);
+
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      reference.red_gain[static_cast<std::size_t>(i * pad.cols + j)] = S(gain_at(i, j));
+      levels.red(i, j) /= gain_at(i, j);
+    }
+  }
+  const auto divided = as_stored();
+  const auto same = depth_of(divided);
+  // roundoff of colours of 60 grey levels where F rises by more than 1.3 per mm; 16 bit: steps of
+  // 1/256 grey level at a single pixel, of 1/128 for the residuals that are averaged
+  const double bound = std::is_same_v<Pixel, double>  ? 1e-10
+                       : std::is_same_v<Pixel, float> ? 5e-5
+                                                      : 2.2 / 256 * 0.75;
+  CHECK(test::largest_error(same.depth_mm, plain.depth_mm) <= bound);
+  CHECK(test::largest_error(plain.depth_mm, same.depth_mm) <= bound);
+  CHECK(same.status.cells == plain.status.cells);
+  CHECK_FALSE(test::largest_error(with_one.depth_mm, depth_of(frame).depth_mm) < 0.5);
+}
+
+TEST_CASE("a pixel without a gain of red is not used", "[depth]") {
+  const Pad pad;
+  auto reference = pad.reference<float>();
+  reference.red_gain.assign(reference.depth_mm.size(), 1.0F);
+  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 5);
+  for (const double bad : {test::nan, 0.0, -1.0, HUGE_VAL}) {
+    reference.red_gain[static_cast<std::size_t>(24 * pad.cols + 28)] = static_cast<float>(bad);
+    for (const int window_px : {1, 29}) {
+      DepthEstimator<> estimator(pad.camera, pad.fluid, reference, {.window_px = window_px});
+      const auto e = test::estimate(estimator, frame);
+      CHECK(e.status(24, 28) == PixelStatus::outside_pad);
+      CHECK(is_finite(e.depth_mm(24, 29)));
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("pixels that are higher or lower than wide", "[depth]", float, double) {
+  using S = TestType;
+  Pad pad;
+  const auto [aspect, cols] = GENERATE(std::pair(0.5, 56), std::pair(1.3, 56), std::pair(2.0, 16));
+  pad.camera.pixel_aspect = aspect;
+  pad.rows = static_cast<Index>(48 / aspect);
+  pad.cols = cols;  // of the last, only a strip of the pad is in the image
+  pad.camera.center_x_px = static_cast<double>(pad.cols - 1) / 2;
+  pad.camera.center_y_px = static_cast<double>(pad.rows - 1) / 2;
+  const auto free = pad.free_depths();
+  const auto pressed = pad.pressed_depths(3);
+  const double bound = std::is_same_v<S, float> ? 5e-5 : 1e-10;
+  for (const auto& [depth, window_px] :
+       {std::pair(&pressed, 1), std::pair(&free, 1), std::pair(&free, 9)}) {
+    CAPTURE(aspect, window_px);
+    const auto e = test::estimate(pad.estimator<S>({.window_px = window_px}), pad.frame<S>(*depth));
+    CHECK(test::largest_error(e.depth_mm, *depth) <= bound);
+    CHECK(e.result.ok());
+    CHECK(e.result.valid_pixels() == e.result.pad_pixels);
+  }
+  // as square pixels, the rays are others
+  Camera<double> square_pixels = pad.camera;
+  square_pixels.pixel_aspect = 1;
+  DepthEstimator<S> wrong(square_pixels, pad.fluid, pad.reference<S>(), {.window_px = 1});
+  CHECK_FALSE(test::largest_error(test::estimate(wrong, pad.frame<S>(pressed)).depth_mm, pressed) <
+              0.02);
 }
 
 TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   const Pad pad;
   const auto reference = pad.reference<float>();
-  const auto message = [&](const auto& make) -> std::string {
-    try {
-      make();
-    } catch (const parameter_error& e) {
-      return e.what();
-    }
-    return "accepted";
-  };
   using Catch::Matchers::StartsWith;
   const auto with_camera = [&](auto change) {
     Camera<double> camera = pad.camera;
     change(camera);
-    return message([&] { DepthEstimator<>(camera, pad.fluid, reference); });
+    return refusal([&] { DepthEstimator<>(camera, pad.fluid, reference); });
   };
   CHECK_THAT(with_camera([](auto& c) { c.refractive_index = 0.9; }),
              StartsWith("Camera: refractive_index = 0.9, must be"));
@@ -376,60 +1235,48 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   const auto with_fluid = [&](auto change) {
     Absorption<double> fluid = pad.fluid;
     change(fluid);
-    return message([&] { DepthEstimator<>(pad.camera, fluid, reference); });
+    return refusal([&] { DepthEstimator<>(pad.camera, fluid, reference); });
   };
   CHECK_THAT(with_fluid([](auto& f) { f.c_red_per_mm = 0; }),
              StartsWith("Absorption: c_red_per_mm = 0, must be finite and > 0"));
   CHECK_THAT(with_fluid([](auto& f) { f.c_green_per_mm = 0.01; }),
-             StartsWith("Absorption: c_green_per_mm = 0.01, must be finite and >= c_red_per_mm"));
+             StartsWith("Absorption: c_green_per_mm = 0.01, must be finite and >= 0.029"));
   CHECK_THAT(with_fluid([](auto& f) { f.kappa = -1; }), StartsWith("Absorption: kappa = -1"));
   CHECK_THAT(with_fluid([](auto& f) { f.max_depth_mm = test::nan; }),
              StartsWith("Absorption: max_depth_mm = nan"));
-  CHECK_THAT(message([&] { DepthEstimator<>(pad.camera, pad.fluid, DepthReference<float>()); }),
+  CHECK_THAT(refusal([&] { DepthEstimator<>(pad.camera, pad.fluid, DepthReference<float>()); }),
              StartsWith("DepthEstimator: rows = 0, must be in [1, 1000000]"));
-  for (const int halvings : {-1, 1, 101}) {
-    CHECK_THAT(
-        message([&] { pad.estimator<NoSmoothing, published::Bisection, float>({}, {halvings}); }),
-        StartsWith("Bisection: halvings = " + std::to_string(halvings)));
+  const auto with_options = [&](const DepthOptions& options) {
+    return refusal([&] { DepthEstimator<>(pad.camera, pad.fluid, reference, options); });
+  };
+  for (const int window_px : {-3, 0, 2, 4, 28, 110, 111}) {
+    CHECK(with_options({.window_px = window_px}) ==
+          "DepthOptions: window_px = " + std::to_string(window_px) + ", must be odd, in [1, 109]");
   }
-  CHECK(message([&] { DepthEstimator<>(pad.camera, pad.fluid, reference); }) == "accepted");
-}
-
-TEST_CASE("a root is refined by the order that is told", "[depth]") {
-  // sum f[j] s^(j + 1) with terms that fall like those of the depth
-  test::Random random(6);
-  for (int k = 0; k < 50; ++k) {
-    double f[6];
-    double scale = 1;
-    for (double& c : f) {
-      c = scale * random.uniform(0.5, 1);
-      scale *= -0.3;
-    }
-    const double truth = random.uniform(0.2, 1);
-    double target = 0;
-    for (int j = 5; j >= 0; --j) {
-      target = (target + f[j]) * truth;
-    }
-    const double off = 1e-2;
-    CHECK(detail::refine<1>(f, target, truth + off) == truth + off);
-    CHECK(std::abs(detail::refine<2>(f, target, truth + off) - truth) < off * off);
-    CHECK(std::abs(detail::refine<3>(f, target, truth + off) - truth) < off * off * off);
-    CHECK(std::abs(detail::refine<6>(f, target, truth + off) - truth) < 1e-11);
+  for (const int window_px : {1, 3, 109}) {  // the last is larger than the image
+    CHECK(with_options({.window_px = window_px}) == "accepted");
   }
-}
-
-TEST_CASE("the rim is the part of the pad up to a fifth of its depth", "[depth]") {
-  struct {
-    detail::PadArea area;
-    DepthReference<double> reference;
-  } pad;
-  pad.reference.rows = 1;
-  pad.reference.cols = 5;
-  pad.reference.depth_mm = {10, 2, 2.01, 0, test::nan};
-  pad.reference.rim_green = 100;
-  const Image<double> light(1, 5, 50);
-  const auto sum = detail::RimLight(pad).sum(0, 1, as_view(light), as_view(light), GreyScale{});
-  CHECK(sum.pixels == 2);
-  CHECK(sum.lit == 2);
-  CHECK(sum.light == 1);
+  for (const int step : {-1, 0, 17}) {
+    CHECK(with_options({.step = step}) ==
+          "DepthOptions: step = " + std::to_string(step) + ", must be in [1, 16]");
+  }
+  CHECK_THAT(with_options({.scale = GreyScale{0, 0, 255}}),
+             StartsWith("GreyScale: units_per_level = 0, must be finite and > 0"));
+  CHECK_THAT(with_options({.scale = GreyScale{1, test::nan, 255}}),
+             StartsWith("GreyScale: dark = nan"));
+  CHECK_THAT(with_options({.scale = GreyScale{1, 255, 255}}),
+             StartsWith("GreyScale: saturated = 255, must be in (255, 256]"));
+  CHECK_THAT(with_options({.scale = GreyScale{1, 0, 300}}),
+             StartsWith("GreyScale: saturated = 300"));
+  const auto with_reference = [&](auto change) {
+    DepthReference<float> other = reference;
+    change(other);
+    return refusal([&] { DepthEstimator<>(pad.camera, pad.fluid, other); });
+  };
+  const char* planes = "DepthEstimator: reference.pixels_used = ";
+  CHECK_THAT(with_reference([](auto& r) { r.depth_mm.pop_back(); }), StartsWith(planes));
+  CHECK_THAT(with_reference([](auto& r) { r.scattering.clear(); }), StartsWith(planes));
+  CHECK_THAT(with_reference([](auto& r) { r.red_gain.push_back(1); }), StartsWith(planes));
+  CHECK_THAT(with_reference([](auto& r) { r.pixels_used = 0; }), StartsWith(planes));
+  CHECK(refusal([&] { DepthEstimator<>(pad.camera, pad.fluid, reference); }) == "accepted");
 }

@@ -71,14 +71,13 @@ Image<Pixel> any_channel(Index rows, Index cols) {
 
 template <class Pixel, int Step>
 auto samples_of(const Image<Pixel>& red, const Image<Pixel>& green) {
-  using Sampler = FrameSampler<Pixel, Step>;
-  using Sample = typename Sampler::Sample;
+  using Sample = typename FrameSampler<Pixel, Step>::Sample;
   std::pair<Image<Sample>, Image<Sample>> out{{red.rows() / Step, red.cols() / Step},
                                               {red.rows() / Step, red.cols() / Step}};
-  auto work = Sampler::workspace(red.cols());
+  FrameSampler<Pixel, Step> sampler(red.cols());
   const Index half = out.first.rows() / 2;
   for (const auto& [first, last] : {std::pair(Index(0), half), std::pair(half, out.first.rows())}) {
-    REQUIRE(Sampler::band(first, last, red, green, as_view(out.first), as_view(out.second), work));
+    REQUIRE(sampler.band(first, last, red, green, as_view(out.first), as_view(out.second)));
   }
   return out;
 }
@@ -114,13 +113,12 @@ TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
 TEST_CASE("a sampled frame of another size is refused", "[sampling]") {
   const Image<std::uint8_t> frame(6, 8, std::uint8_t(9));
   Image<std::uint16_t> out(3, 4, std::uint16_t(7)), small(3, 3, std::uint16_t(7));
-  using Sampler = FrameSampler<std::uint8_t, 2>;
-  auto work = Sampler::workspace(8), narrow = Sampler::workspace(7);
-  CHECK_FALSE(Sampler::band(0, 3, frame, frame, as_view(small), as_view(small), work));
-  CHECK_FALSE(Sampler::band(0, 4, frame, frame, as_view(out), as_view(out), work));
-  CHECK_FALSE(Sampler::band(0, 3, frame, frame, as_view(out), as_view(out), narrow));
+  FrameSampler<std::uint8_t, 2> sampler(8), narrow(7);
+  CHECK_FALSE(sampler.band(0, 3, frame, frame, as_view(small), as_view(small)));
+  CHECK_FALSE(sampler.band(0, 4, frame, frame, as_view(out), as_view(out)));
+  CHECK_FALSE(narrow.band(0, 3, frame, frame, as_view(out), as_view(out)));
   CHECK(out(0, 0) == 7);
-  CHECK(Sampler::band(0, 3, frame, frame, as_view(out), as_view(out), work));
+  CHECK(sampler.band(0, 3, frame, frame, as_view(out), as_view(out)));
   CHECK(out(2, 3) == 9 * 256);
 }
 
@@ -137,7 +135,8 @@ TEST_CASE("rows without a column are read into nothing", "[sampling]") {
 
 TEST_CASE("a sample's ray is that of the place between its pixels", "[sampling]") {
   rc::prop("at every step", [] {
-    const test::Pad pad;
+    test::Pad pad;
+    pad.camera.pixel_aspect = test::uniform(0.5, 1.5);
     const int step = static_cast<int>(test::whole(1, 6));
     const double row = test::uniform(0, 47), col = test::uniform(0, 55);
     const auto direct = point_at(pad.camera, row, col, 5.0);
@@ -220,6 +219,55 @@ TEST_CASE("what moves a single row or column of samples moves every pixel", "[sa
   CHECK_FALSE(spread(narrow, narrow_status));
   CHECK_FALSE(spread(depth, narrow_status));
   CHECK(narrow.cells == std::vector<float>(narrow.cells.size(), 7.0F));
+}
+
+TEST_CASE("each plane of a sampled reference holds the means of blocks", "[sampling]") {
+  DepthReference<double> free;
+  free.rows = 5;
+  free.cols = 6;
+  for (int k = 0; k < 30; ++k) {
+    free.depth_mm.push_back(k);
+    free.scattering.push_back(100 + k);
+  }
+  CHECK(sampled(free, 2).red_gain.empty());
+  free.red_gain.assign(30, 1.0);
+  free.red_gain[2] = 3;
+  free.depth_mm[9] = test::nan;
+  const auto half = sampled(free, 2);
+  CHECK(half.rows == 2);
+  CHECK(half.cols == 3);
+  CHECK(half.scattering == std::vector<double>{103.5, 105.5, 107.5, 115.5, 117.5, 119.5});
+  CHECK(half.red_gain == std::vector<double>{1, 1.5, 1, 1, 1, 1});
+  // a sample is of the pad where all its pixels are
+  CHECK(half.depth_mm[0] == 3.5);
+  CHECK(std::isnan(half.depth_mm[1]));
+  CHECK(half.depth_mm[2] == 7.5);
+}
+
+TEST_CASE("samples of red divided by a gain have the same depth with that gain", "[sampling]") {
+  const test::Pad pad;
+  auto reference = pad.reference<double>();
+  auto frame = pad.frame<double>(pad.pressed_depths(3));
+  const auto depth_of = [&] {
+    const auto [red, green] = samples_of<double, 2>(frame.red, frame.green);
+    DepthEstimator<double> estimator(sampled(pad.camera, 2), pad.fluid, sampled(reference, 2),
+                                     {.window_px = 5, .step = 2});
+    Image<double> depth(red.rows(), red.cols());
+    CHECK(estimator(red, green, depth).valid_pixels() > 300);
+    return depth;
+  };
+  const auto plain = depth_of();
+  reference.red_gain.resize(reference.depth_mm.size());
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {  // one gain in each block of 2 x 2
+      const double gain = 1 + 0.05 * static_cast<double>((i / 2 + 3 * (j / 2)) % 5);
+      reference.red_gain[static_cast<std::size_t>(i * pad.cols + j)] = gain;
+      frame.red(i, j) /= gain;
+    }
+  }
+  const auto gained = depth_of();
+  CHECK(test::largest_error(gained, plain) <= 1e-10);
+  CHECK(test::largest_error(plain, gained) <= 1e-10);
 }
 
 TEST_CASE("sampling refuses steps that no image has", "[sampling]") {

@@ -92,9 +92,7 @@ void try_absorption(Input& in) {
   }
   const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples), in.number(0, 2));
   require(!fit.ok() || is_finite(fit.fluid.kappa), "a fluid is finite");
-  if (fit.ok()) {
-    expects_valid(fit.fluid);
-  }
+  require(!fit.ok() || check(fit.fluid).empty(), "a fluid is accepted");
 }
 
 void try_taxels(Input& in) {

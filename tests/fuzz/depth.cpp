@@ -41,19 +41,20 @@ void try_depth(Input& in) {
   const Absorption<double> fluid = any_fluid(in);
   const Grid<Pixel> pad_red(in, rows, cols, 0, 260), pad_green(in, rows, cols, 0, 260);
   const Grid<float> shape(in, rows, cols, 0, 15);
-  const int window_px = 3 + 2 * static_cast<int>(in.whole(0, 8));
-  const auto reference =
-      fit_reference(camera, fluid, pad_red.view(), pad_green.view(), shape.view());
-  const DepthEstimator estimate(camera, fluid, reference, BiasFreeMean{window_px});
-  auto work = estimate.template workspace<Pixel>();
+  const int window_px = 1 + 2 * static_cast<int>(in.whole(0, 9));
+  auto reference = fit_reference(camera, fluid, pad_red.view(), pad_green.view(), shape.view());
+  for (Index k = in.flag() ? rows * cols : 0; k > 0; --k) {
+    reference.red_gain.push_back(static_cast<float>(in.is_empty() ? 1 : in.number(0.5, 2)));
+  }
+  DepthEstimator<> estimate(camera, fluid, reference, {.window_px = window_px});
 
   Grid<Pixel> red(in, rows, cols, 0, 260), green(in, rows, cols, 0, 260);
   Grid<float> depth(rows, cols), again(rows, cols);
   Grid<PixelStatus> status(rows, cols), status_again(rows, cols);
   const auto look = [&](Grid<float>& to, Grid<PixelStatus>& why) {
-    const auto result = fuzz::frame(
-        [&] { return estimate(red.view(), green.view(), to.view(), why.view(), work); });
-    require(result.status != DepthStatus::refused, "a frame of the right size is accepted");
+    const auto result =
+        fuzz::frame([&] { return estimate(red.view(), green.view(), to.view(), why.view()); });
+    require(result.status != FrameStatus::refused, "a frame of the right size is accepted");
   };
   look(depth, status);
   look(again, status_again);
@@ -70,7 +71,7 @@ void try_depth(Input& in) {
   if (rows == 0 || cols == 0) {
     return;
   }
-  const Index reach = BiasFreeMean{window_px}.windows_px()[1] / 2;
+  const Index reach = window_px == 1 ? 0 : detail::two_windows(window_px, 1)[1] / 2;
   const Index row = in.whole(0, rows - 1), col = in.whole(0, cols - 1);
   red.view()(row, col) = in.cell<Pixel>(0, 260);
   green.view()(row, col) = in.cell<Pixel>(0, 260);

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Every inverse for depth against the root in fifty digits of the equation with the same inputs.
-#include "fingerpad/published/depth.hpp"
+#include "fingerpad/depth/depth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -23,9 +23,8 @@ constexpr double newton_double = 1e-12;  // documented for newton_depth()
 // A float colour of 57 grey levels has a resolution of 3.8e-6; F rises by at least 1.3 grey levels
 // per mm and is itself rounded to a few such units.
 constexpr double newton_float = 2e-5;
-constexpr double two_steps_float = 1e-5;     // documented
-constexpr double one_step_float = 1e-4;      // documented
-constexpr double polynomial_double = 1e-12;  // degree 12: the error of the fit is below this
+constexpr double polynomial_double = 1e-12;  // documented for detail::DepthPolynomial
+constexpr double polynomial_float = 1e-5;
 constexpr double smallest = 1e-6;
 constexpr double deepest = 14;
 }  // namespace bound_mm
@@ -106,10 +105,15 @@ struct Pixel {
   Colour<S> colour;
   Digits50 exact;
 
-  Pixel(const Absorption<double>& f, double rho_px, double l, double bright = brightness)
+  Pixel(const Absorption<double>& f,
+        double rho_px,
+        double l,
+        double bright = brightness,
+        bool one_height = false)
       : fluid(cast<S>(f)) {
     const auto camera = camera_at_corner();
     light = pencil_of(camera, ray_at_pixel(camera, 0.0, rho_px));
+    light.height.sagittal_mm = one_height ? light.height.meridional_mm : light.height.sagittal_mm;
     // rounding of the pencil is no error of the solver
     light = as<double>(Pencil<double>{static_cast<double>(S(light.path_factor)),
                                       {static_cast<double>(S(light.height.meridional_mm)),
@@ -136,12 +140,12 @@ std::vector<double> depths() {
 
 /// Worst error of a solver over all deltas, radii and depths.
 template <class S, class Solve>
-double worst_error(const Solve& solve, double bright = brightness) {
+double worst_error(const Solve& solve, double bright = brightness, bool one_height = false) {
   double worst = 0;
   for (const double delta : deltas) {
     for (double rho = 0; rho <= static_cast<double>(pixels_to_rim); rho += 78) {
       for (const double l : depths()) {
-        const Pixel<S> p(fluid_with(delta), rho, l, bright);
+        const Pixel<S> p(fluid_with(delta), rho, l, bright, one_height);
         const DepthRoot<S> root = solve(p.fluid, as<S>(p.light), p.g, p.colour);
         if (root.status == PixelStatus::below_range && p.exact < 2 * bound_mm::newton_float) {
           continue;  // a float colour cannot resolve such a depth
@@ -181,13 +185,30 @@ TEST_CASE("Newton's depth also has no bound of its own in 50 digits", "[depth]")
   CHECK(error_mm(root.depth_mm, p.exact) <= 1e-44);
 }
 
+namespace {
+
+/// The printed equations at a pixel with one height.
+double printed_quotient(const Pixel<double>& p, double l) {
+  const published::Fluid<double> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
+  return published::quotient(fluid, p.light.path_factor, p.light.height.meridional_mm, p.colour.red,
+                             p.colour.green, l);
+}
+
+}  // namespace
+
 TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
   for (const int halvings : {2, 8, 16, 24}) {
     const double half_width = std::ldexp(18.0, 1 - halvings);
     const double error = worst_error<double>(
         [&](const auto& fluid, const auto& light, const auto& g, const auto& colour) {
-          return published::bisect_depth(fluid, light, g, colour, halvings);
-        });
+          const published::Fluid<double> printed{fluid.c_red_per_mm, fluid.c_green_per_mm,
+                                                 fluid.kappa};
+          const double l = published::bisect(printed, light.path_factor, light.height.meridional_mm,
+                                             g, colour.red, colour.green, fluid.max_depth_mm,
+                                             halvings);
+          return DepthRoot<double>{l, PixelStatus::ok};
+        },
+        brightness, true);
     INFO(halvings);
     CHECK(error <= half_width + 1e-9);  // some depths lie midway between two of its values
     CHECK(error > 0.2 * half_width);    // a much smaller error would be suspicious
@@ -196,27 +217,42 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
 
 TEST_CASE("the published quotient has no value where the published bisection starts", "[depth]") {
   // E006: at depth 0 it is (b - kappa r) / 0, an infinity with the wrong sign.
-  const Pixel<double> p(fluid_with(published_delta), 50, 6);
-  const double at_start = published::quotient(p.fluid, p.light, p.colour, 0.0);
-  CHECK_FALSE(is_finite(at_start));
-  CHECK_FALSE(at_start >= p.g);  // the first step would go up, out of the fluid
-  CHECK(published::quotient(p.fluid, p.light, p.colour, 1e-3) > p.g);
-  const auto exact = static_cast<double>(p.exact);
-  CHECK(published::quotient(p.fluid, p.light, p.colour, exact) == Approx(p.g).epsilon(1e-10));
+  const Pixel<double> p(fluid_with(published_delta), 50, 6, brightness, true);
+  CHECK_FALSE(is_finite(printed_quotient(p, 0)));
+  CHECK_FALSE(printed_quotient(p, 0) >= p.g);  // the first step would go up, out of the fluid
+  CHECK(printed_quotient(p, 1e-3) > p.g);
+  CHECK(printed_quotient(p, static_cast<double>(p.exact)) == Approx(p.g).epsilon(1e-10));
 }
 
+namespace {
+
+/// One pixel in one row, in a block of others.
+template <class S>
+DepthRoot<S> in_a_block(
+    const detail::DepthPolynomial<S>& rows, int col, S red, S green, const S& per_g) {
+  constexpr auto n = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
+  const std::vector<S> reds(n, red), greens(n, green), all_per_g(n, per_g);
+  std::vector<S> depth(n, S(-1));
+  std::vector<PixelStatus> status(n);
+  rows.invert(0, col, reds.data(), greens.data(), all_per_g.data(), depth.data(), status.data());
+  return {depth[0], status[0]};
+}
+
+}  // namespace
+
 TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[depth]") {
-  const auto solvers = [](const Pixel<double>& p) {
-    return std::vector<DepthRoot<double>>{newton_depth(p.fluid, p.light, p.g, p.colour),
-                                          published::bisect_depth(p.fluid, p.light, p.g, p.colour)};
-  };
-  const auto expect = [&](const Pixel<double>& p, PixelStatus status) {
-    for (const auto& root : solvers(p)) {
+  const auto fluid = fluid_with(published_delta, 10);
+  const detail::DepthPolynomial<double> rows(camera_at_corner(), fluid, 235, scattering);
+  const auto expect = [&](const Pixel<double>& p, PixelStatus status, bool by_rows = true) {
+    std::vector<DepthRoot<double>> roots{newton_depth(p.fluid, p.light, p.g, p.colour)};
+    if (by_rows) {
+      roots.push_back(in_a_block(rows, 100, p.colour.red, p.colour.green, 1 / p.g));
+    }
+    for (const auto& root : roots) {
       CHECK(root.status == status);
       CHECK(is_finite(root.depth_mm) == (status == PixelStatus::ok));
     }
   };
-  const auto fluid = fluid_with(published_delta, 10);
   expect(Pixel<double>(fluid, 100, 10 - 1e-9), PixelStatus::ok);
   expect(Pixel<double>(fluid, 100, 10 + 1e-9), PixelStatus::above_range);
   expect(Pixel<double>(fluid, 100, 17), PixelStatus::above_range);
@@ -230,13 +266,14 @@ TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[
   p.colour.green *= 1 + 1e-12;
   expect(p, PixelStatus::below_range);
   for (const double bad : {not_a_number<double>(), infinity, -infinity}) {
+    // the rows are given no infinite colour: a window leaves such pixels out
     p.colour = {bad, good.green};
-    expect(p, PixelStatus::not_a_number);
+    expect(p, PixelStatus::not_a_number, bad != bad);
     p.colour = {good.red, bad};
-    expect(p, PixelStatus::not_a_number);
+    expect(p, PixelStatus::not_a_number, bad != bad);
     p.colour = good;
     p.g = bad;
-    expect(p, PixelStatus::not_a_number);
+    expect(p, PixelStatus::not_a_number, false);
     p.g = scattering;
   }
   expect(p, PixelStatus::ok);
@@ -244,43 +281,38 @@ TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[
 
 namespace {
 
-/// Row solver of an exponential-free policy over one row of pixels, with its references.
-template <class Inverse, class S>
+/// One row of pixels from the axis to the rim, all at one depth.
+template <class S>
 class RowSolver {
  public:
   explicit RowSolver(const Absorption<double>& fluid)
-      : fluid_(fluid), rows_(camera_at_corner(), fluid, reference(), Inverse{}) {}
+      : fluid_(fluid), rows_(camera_at_corner(), fluid, pixels_to_rim, scattering) {}
 
   /// Worst error with all pixels at depth l.
   double error(double l, double bright) const {
-    std::vector<S> red, green, depth(std::size_t(pixels_to_rim), S(-1));
-    std::vector<PixelStatus> status(std::size_t(pixels_to_rim), PixelStatus::outside_pad);
-    const auto g = static_cast<double>(S(scattering));
     const auto camera = camera_at_corner();
-    std::vector<Pencil<double>> light;
-    for (Index j = 0; j < pixels_to_rim; ++j) {
-      light.push_back(pencil_of(camera, ray_at_pixel(camera, 0.0, static_cast<double>(j))));
-      const auto c = colour_at_depth(fluid_, light.back(), bright, g, l);
-      red.push_back(S(c.red));
-      green.push_back(S(c.green));
-    }
-    rows_.invert(0, pixels_to_rim, red.data(), green.data(), depth.data(), status.data());
+    const S per_g = S(1) / S(scattering);
+    const auto g = static_cast<double>(S(scattering));
     double worst = 0;
-    for (std::size_t j = 0; j < red.size(); j += 39) {
+    for (int j = 0; j < static_cast<int>(pixels_to_rim); j += 39) {
+      const auto light = pencil_of(camera, ray_at_pixel(camera, 0.0, static_cast<double>(j)));
+      const auto c = colour_at_depth(fluid_, light, bright, g, l);
+      const Colour<S> rounded{S(c.red), S(c.green)};
+      const auto root = in_a_block(rows_, j, rounded.red, rounded.green, per_g);
       const ExactEquation f(
-          fluid_, as<Digits50>(light[j]), Digits50(g),
-          Colour<double>{static_cast<double>(red[j]), static_cast<double>(green[j])});
+          fluid_, as<Digits50>(light), Digits50(g),
+          Colour<double>{static_cast<double>(rounded.red), static_cast<double>(rounded.green)});
       const Digits50 exact = f.root(l);
-      if (status[j] == PixelStatus::below_range && exact < 2 * bound_mm::newton_float) {
+      if (root.status == PixelStatus::below_range && exact < 2 * bound_mm::newton_float) {
         continue;
       }
-      worst =
-          (std::max)(worst, status[j] == PixelStatus::ok ? error_mm(depth[j], exact) : HUGE_VAL);
+      worst = (std::max)(
+          worst, root.status == PixelStatus::ok ? error_mm(root.depth_mm, exact) : HUGE_VAL);
     }
     return worst;
   }
 
-  double worst(double bright = brightness) const {
+  double worst(double bright) const {
     double worst = 0;
     for (const double l : depths()) {
       worst = (std::max)(worst, error(l, bright));
@@ -289,44 +321,31 @@ class RowSolver {
   }
 
  private:
-  static DepthReference<S> reference() {
-    DepthReference<S> r;
-    r.rows = 1;
-    r.cols = pixels_to_rim;
-    r.depth_mm.assign(std::size_t(pixels_to_rim), S(1));
-    r.scattering.coefficient[0] = S(scattering);
-    r.scattering.rho_max_mm = S(18.735);
-    r.pixels_used = pixels_to_rim;
-    return r;
-  }
   Absorption<double> fluid_;
-  detail::DepthRows<Inverse, AstigmaticHeights, S, RadialScattering<S>> rows_;
+  detail::DepthPolynomial<S> rows_;
 };
 
 /// Worst error over all differences of absorption, for membranes of the published brightness and
 /// darker.
-template <class S, int Order, int Degree, int Radial = 3>
-double worst_of_rows(double max_depth_mm = 18) {
+template <class S>
+double worst_of_rows(double max_depth_mm) {
   double worst = 0;
   for (const double delta : deltas) {
-    const RowSolver<ExponentialFree<Order, Degree, Radial>, S> solver(
-        fluid_with(delta, max_depth_mm));
-    worst = (std::max)(worst, (std::max)(solver.worst(), solver.worst(0.4 * brightness)));
+    const RowSolver<S> solver(fluid_with(delta, max_depth_mm));
+    for (const double bright : {brightness, 0.4 * brightness}) {
+      worst = (std::max)(worst, solver.worst(bright));
+    }
   }
   return worst;
 }
 
 }  // namespace
 
-TEST_CASE("the exponential-free depth in float", "[depth]") {
-  // The error of a single Newton step depends on the range beyond the depths: 2.8e-4 for 18 mm.
-  CHECK((worst_of_rows<float, 2, 6>(14.5)) <= bound_mm::one_step_float);
-  CHECK((worst_of_rows<float, 3, 6>()) <= bound_mm::one_step_float);
-  CHECK((worst_of_rows<float, 4, 6>()) <= bound_mm::two_steps_float);
-  CHECK((worst_of_rows<float, 9, 6>()) <= bound_mm::two_steps_float);
-}
-
-TEST_CASE("the exponential-free depth in double", "[depth]") {
-  CHECK((worst_of_rows<double, 9, 12, 8>()) <= bound_mm::polynomial_double);
-  CHECK((worst_of_rows<double, 8, 12, 8>()) <= bound_mm::polynomial_double);
+TEST_CASE("depth by polynomials, for ranges of 14.5 and 18 mm", "[depth]") {
+  const double max_depth_mm = GENERATE(14.5, 18.0);
+  const double single = worst_of_rows<float>(max_depth_mm);
+  const double twice = worst_of_rows<double>(max_depth_mm);
+  CAPTURE(max_depth_mm, single, twice);
+  CHECK(single <= bound_mm::polynomial_float);
+  CHECK(twice <= bound_mm::polynomial_double);
 }

@@ -21,7 +21,6 @@
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/motion/spatial_dots.hpp"
-#include "fingerpad/published/depth.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -151,28 +150,28 @@ Pad fine_pad() {
 struct FrameMistake {
   const char* what;
   Frame8 (*make)(const Frame8&);
-  DepthStatus said;
+  FrameStatus said;
 };
 
 const FrameMistake with_a_frame[] = {
-    {"none", [](const Frame8& f) { return f; }, DepthStatus::ok},
+    {"none", [](const Frame8& f) { return f; }, FrameStatus::ok},
     {"lamp 10 % darker", [](const Frame8& f) { return times(f, 0.9); },
-     DepthStatus::pad_has_changed},
+     FrameStatus::not_of_this_pad},
     {"lamp 10 % brighter", [](const Frame8& f) { return times(f, 1.1); },
-     DepthStatus::pad_has_changed},
-    {"lamp off", [](const Frame8& f) { return times(f, 0); }, DepthStatus::pad_has_changed},
-    {"lens saturated", [](const Frame8& f) { return times(f, 9); }, DepthStatus::pad_has_changed},
+     FrameStatus::not_of_this_pad},
+    {"lamp off", [](const Frame8& f) { return times(f, 0); }, FrameStatus::not_of_this_pad},
+    {"lens saturated", [](const Frame8& f) { return times(f, 9); }, FrameStatus::not_of_this_pad},
     {"row stride without padding", [](const Frame8& f) { return sheared(f, 5); },
-     DepthStatus::pad_has_changed},
+     FrameStatus::not_of_this_pad},
     {"red and green exchanged",
      [](const Frame8& f) {
        Frame8 out = f;
        std::swap(out.red, out.green);
        return out;
      },
-     DepthStatus::pad_has_changed},
+     FrameStatus::not_of_this_pad},
     {"a frame of another size", [](const Frame8&) { return Frame8(240, 319, 60); },
-     DepthStatus::refused},
+     FrameStatus::refused},
 };
 
 }  // namespace
@@ -187,29 +186,16 @@ TEST_CASE("mistakes with the reference are refused with their likely cause", "[m
   }
 }
 
-TEST_CASE("mistakes with the reference are refused as printed, too", "[mistakes]") {
-  Given given;
-  const auto said = [&](const auto& red, const auto& green) {
-    return refusal([&] {
-      (void)published::depth_reference(given.pad.camera, given.pad.fluid, red, green,
-                                       given.depth_mm);
-    });
-  };
-  CHECK(said(given.frame.red, given.frame.green) == "accepted");
-  CHECK(said(given.frame.green, given.frame.red).find(exchanged) != std::string::npos);
-}
-
 TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
   const Pad pad = fine_pad();
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
-  auto workspace = estimator.workspace<std::uint8_t>();
+  auto estimator = pad.estimator<float>();
   Image<float> depth(pad.rows, pad.cols);
   for (const double pressed_mm : {0.0, 3.0}) {
     const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(pressed_mm), 1, 5);
     for (const FrameMistake& mistake : with_a_frame) {
       const auto seen = mistake.make(frame);
-      const DepthResult result = estimator(seen.red, seen.green, depth, workspace);
-      CAPTURE(mistake.what, pressed_mm, result.rim_light, result.rim_lit, result.rim_pixels);
+      const DepthResult result = estimator(seen.red, seen.green, depth);
+      CAPTURE(mistake.what, pressed_mm);
       CHECK(name_of(result.status) == std::string(name_of(mistake.said)));
     }
   }
@@ -218,14 +204,14 @@ TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
 TEST_CASE("a membrane that has aged: depths are those of the fluid", "[mistakes]") {
   // half a millimetre higher on the same base, and lower
   const Pad pad = fine_pad();
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
+  auto estimator = pad.estimator<float>();
   const auto mean_error_mm = [&](double higher_mm) {
     Pad aged = pad;
     aged.height_mm += higher_mm;
     aged.sphere_radius_mm =
         (std::pow(pad.base_radius_mm(), 2) + std::pow(aged.height_mm, 2)) / (2 * aged.height_mm);
     const auto truth = aged.pressed_depths(3);
-    const auto seen = test::estimate<float>(estimator, aged.frame<std::uint8_t>(truth, 1, 5));
+    const auto seen = test::estimate(estimator, aged.frame<std::uint8_t>(truth, 1, 5));
     CHECK(seen.result.ok());
     double sum = 0, count = 0;
     for (std::size_t k = 0; k < truth.cells.size(); ++k) {
@@ -243,32 +229,41 @@ TEST_CASE("a membrane that has aged: depths are those of the fluid", "[mistakes]
 
 TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
   const Pad pad = fine_pad();
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>();
-  auto workspace = estimator.workspace<std::uint8_t>();
+  auto estimator = pad.estimator<float>();
   Image<float> depth(pad.rows, pad.cols);
   Image<PixelStatus> status(pad.rows, pad.cols);
   const auto frame = times(pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5), 0.9);
-  const DepthResult whole = estimator(frame.red, frame.green, depth, workspace);
-  DepthResult sum = estimator.band(0, 70, frame.red, frame.green, depth, status, workspace);
-  sum.add(estimator.band(70, 240, frame.red, frame.green, depth, status, workspace));
-  CHECK(sum.count == whole.count);
-  CHECK(sum.rim_pixels == whole.rim_pixels);
-  CHECK(sum.rim_light == Approx(whole.rim_light));
+  const auto bands_of = [&](const Frame8& seen) {
+    DepthResult sum = estimator.band(0, 70, seen.red, seen.green, depth, status);
+    const FrameStatus first = sum.status;
+    sum.add(estimator.band(70, 240, seen.red, seen.green, depth, status));
+    return std::pair(sum, first);
+  };
+  const DepthResult whole = estimator(frame.red, frame.green, depth);
+  const auto [sum, first] = bands_of(frame);
+  CHECK(whole.status == FrameStatus::not_of_this_pad);
   CHECK(sum.status == whole.status);
-  // one of them in the dark
-  auto dark = frame;
+  CHECK(sum.count == whole.count);
+  CHECK(first == FrameStatus::not_of_this_pad);
+  // one of them in the dark: its own rim is dark, that of the frame is mostly lit
+  auto dark = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5);
   for (Index i = 0; i < 70; ++i) {
     for (Index j = 0; j < pad.cols; ++j) {
       dark.green(i, j) = 0;
     }
   }
-  const DepthResult lit = estimator(dark.red, dark.green, depth, workspace);
-  sum = estimator.band(0, 70, dark.red, dark.green, depth, status, workspace);
-  REQUIRE(sum.rim_pixels > 0);
-  REQUIRE(sum.rim_lit == 0);
-  sum.add(estimator.band(70, 240, dark.red, dark.green, depth, status, workspace));
-  CHECK(sum.rim_lit == lit.rim_lit);
-  CHECK(sum.rim_light == Approx(lit.rim_light).epsilon(1e-12));
+  const auto [both, upper] = bands_of(dark);
+  CHECK(upper == FrameStatus::not_of_this_pad);
+  CHECK(both.status == FrameStatus::ok);
+  CHECK(estimator(dark.red, dark.green, depth).status == FrameStatus::ok);
+  // a band that was refused, before or after one that was not
+  const DepthResult good = estimator.band(70, 240, dark.red, dark.green, depth, status);
+  for (const bool is_first : {true, false}) {
+    DepthResult bad = estimator.band(0, 241, dark.red, dark.green, depth, status);
+    DepthResult some = is_first ? bad : good;
+    some.add(is_first ? good : bad);
+    CHECK(some.status == FrameStatus::refused);
+  }
 }
 
 TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
@@ -288,50 +283,54 @@ TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
         cell = static_cast<std::uint8_t>(random.whole(0, 255));
       }
     }
-    const auto check = [&](const auto& estimator) {
-      auto workspace = estimator.template workspace<std::uint8_t>();
-      (void)estimator(frame.red, frame.green, depth, status, workspace);
+    const auto check = [&](auto estimator) {
+      (void)estimator(frame.red, frame.green, depth, status);
       for (std::size_t p = 0; p < depth.cells.size(); ++p) {
         const auto l = static_cast<double>(depth.cells[p]);
         const bool within = l >= 0 && l <= pad.fluid.max_depth_mm;
         REQUIRE(within == (status.cells[p] == PixelStatus::ok));
       }
     };
-    (void)refusal([&] { check(pad.estimator<NoSmoothing, ExponentialFree<>, float>()); });
-    (void)refusal([&] { check(pad.estimator<NoSmoothing, Newton, float>()); });
-    (void)refusal([&] { check(pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5})); });
+    for (const int window_px : {1, 5}) {
+      (void)refusal([&] { check(pad.estimator<float>({.window_px = window_px})); });
+      (void)refusal([&] { check(pad.estimator<double>({.window_px = window_px})); });
+    }
   }
 }
 
 TEST_CASE("a bad pixel of the reference spoils no other", "[mistakes]") {
-  Pad pad = fine_pad();
-  const auto free = pad.free_depths();
-  const auto clean = pad.frame<std::uint8_t>(free, 1, 3);
+  const Pad pad = fine_pad();
   const auto pressed = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 4);
-  const auto depth_with = [&](const Frame8& seen) {
-    const auto reference = published::depth_reference<float, AstigmaticHeights>(
-        pad.camera, pad.fluid, seen.red, seen.green, free, NoSmoothing{});
-    const DepthEstimator estimator(pad.camera, pad.fluid, reference, BiasFreeMean{29});
-    return test::estimate<float>(estimator, pressed).depth_mm;
+  auto good = pad.reference<float>();
+  good.red_gain.assign(good.depth_mm.size(), 1.0F);
+  const auto depth_with = [&](const DepthReference<float>& reference) {
+    DepthEstimator<> estimator(pad.camera, pad.fluid, reference);
+    return test::estimate(estimator, pressed).depth_mm;
   };
-  const auto before = depth_with(clean);
-  for (const Index size : {1, 9}) {
-    Frame8 spoilt = clean;
-    for (Index i = 0; i < size; ++i) {
-      for (Index j = 0; j < size; ++j) {
-        spoilt.red(100 + i, 150 + j) = spoilt.green(100 + i, 150 + j) = 255;
+  const auto before = depth_with(good);
+  using Plane = std::vector<float> DepthReference<float>::*;
+  for (const Plane plane : {&DepthReference<float>::depth_mm, &DepthReference<float>::scattering,
+                            &DepthReference<float>::red_gain}) {
+    for (const Index size : {1, 9}) {
+      auto spoilt = good;
+      for (Index i = 0; i < size; ++i) {
+        for (Index j = 0; j < size; ++j) {
+          (spoilt.*plane)[static_cast<std::size_t>((100 + i) * pad.cols + 150 + j)] =
+              not_a_number<float>();
+        }
       }
+      const auto after = depth_with(spoilt);
+      double worst = 0;
+      for (std::size_t k = 0; k < after.cells.size(); ++k) {
+        const double change = std::abs(static_cast<double>(after.cells[k] - before.cells[k]));
+        worst = change > worst ? change : worst;
+      }
+      CAPTURE(size, worst);
+      // the effect of the pixels that the window has lost, and no more
+      CHECK(worst < (size == 1 ? 0.02 : 0.15));
+      CHECK(std::isnan(after(100, 150)));
+      CHECK(is_finite(after(100, 150 + size)));
     }
-    const auto after = depth_with(spoilt);
-    double worst = 0;
-    for (std::size_t k = 0; k < after.cells.size(); ++k) {
-      const double change = std::abs(static_cast<double>(after.cells[k] - before.cells[k]));
-      worst = change > worst ? change : worst;
-    }
-    CAPTURE(size, worst);
-    // the effect of the pixels that the window has lost, and no more
-    CHECK(worst < (size == 1 ? 0.02 : 0.15));
-    CHECK(std::isnan(after(100, 150)));
   }
 }
 
@@ -370,9 +369,9 @@ TEST_CASE("12-bit pixels above their scale are left out, whatever the width", "[
     other.red.cells[k] = frame.red.cells[k];
     other.green.cells[k] = wild ? 4080 : frame.green.cells[k];
   }
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5});
-  const auto seen = test::estimate<float>(estimator, frame, scale);
-  CHECK(test::same_bits(seen.depth_mm, test::estimate<float>(estimator, other, scale).depth_mm));
+  auto estimator = pad.estimator<float>({.window_px = 5, .scale = scale});
+  const auto seen = test::estimate(estimator, frame);
+  CHECK(test::same_bits(seen.depth_mm, test::estimate(estimator, other).depth_mm));
   CHECK(seen.result.valid_pixels() > 1000);
 }
 
@@ -452,15 +451,14 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
   }
 }
 
-TEST_CASE("a copied workspace is as good as the first", "[mistakes]") {
+TEST_CASE("a copy is as good as the first", "[mistakes]") {
   const Pad pad;
   const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5);
-  const auto estimator = pad.estimator<BiasFreeMean, ExponentialFree<>, float>({5});
-  auto first = estimator.workspace<std::uint8_t>();
+  auto first = pad.estimator<float>({.window_px = 5});
   auto copy = first;
   Image<float> a(pad.rows, pad.cols), b(pad.rows, pad.cols);
-  CHECK(estimator(frame.red, frame.green, a, first).valid_pixels() > 1000);
-  CHECK(estimator(frame.red, frame.green, b, copy).valid_pixels() > 1000);
+  CHECK(first(frame.red, frame.green, a).valid_pixels() > 1000);
+  CHECK(copy(frame.red, frame.green, b).valid_pixels() > 1000);
   CHECK(test::same_bits(a, b));
 
   ContactTest contact_test;

@@ -9,21 +9,19 @@ using Estimator = fingerpad::DepthEstimator<>;
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {
-  const auto depth = [](const Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
-    auto workspace = estimator.workspace<unsigned char>();
+  const auto depth = [](Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
     cv::Mat_<float> depth_mm(image.size());
-    return estimator(image, image, depth_mm, workspace);
+    return estimator(image, image, depth_mm);
   };
   (void)depth;
 }
 #else
 static void good_or_bad() {
-  const auto depth = [](const Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
-    auto workspace = estimator.workspace<unsigned char>();
+  const auto depth = [](Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
     cv::Mat_<float> depth_mm(image.size());
     const auto red = fingerpad::channel<unsigned char>(image, 2);
     const auto green = fingerpad::channel<unsigned char>(image, 1);
-    return estimator(red, green, depth_mm, workspace);
+    return estimator(red, green, depth_mm);
   };
   (void)depth;
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "fingerpad/optics/camera.hpp"
-#include "fingerpad/published/camera.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -21,6 +21,12 @@ using test::Dual;
 using test::near;
 
 namespace {
+
+/// The camera in the symbols of the printed method; without a plate.
+published::Pinhole<double> pinhole(const Camera<double>& camera) {
+  return {camera.plate_distance_mm, camera.refractive_index, camera.center_y_px, camera.center_x_px,
+          camera.pitch_mm};
+}
 
 double sine(double tangent) {
   return tangent / std::sqrt(1 + tangent * tangent);
@@ -111,16 +117,21 @@ TEST_CASE("virtual heights", "[optics]") {
   rc::prop("are the published closed form n h1 cos^3(phi1) / cos^3(phi2)", [] {
     auto camera = any_camera();
     camera.plate_thickness_mm = 0;
+    camera.pixel_aspect = 1;
     const double air = std::atan(any_tangent());
     const double fluid = std::asin(std::sin(air) / camera.refractive_index);
     const auto ray = ray_at_tangent(camera, std::tan(air));
     const double ratio = std::cos(fluid) / std::cos(air);
     const double nh = camera.refractive_index * camera.plate_distance_mm;
-    const auto one = published::SingleHeight::heights(camera, ray);
+    const auto printed =
+        published::ray_of(pinhole(camera), camera.center_y_px,
+                          camera.center_x_px + std::tan(air) / tangent_per_px(camera));
     const auto two = pencil_heights(camera, ray);
-    RC_ASSERT(one.meridional_mm == one.sagittal_mm);
-    RC_ASSERT(std::abs(one.meridional_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-13);
-    RC_ASSERT(two.meridional_mm == one.meridional_mm);
+    RC_ASSERT(std::abs(printed.h2_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-12);
+    RC_ASSERT(std::abs(printed.cos_phi1 / std::cos(fluid) - 1) < 1e-12);
+    RC_ASSERT(std::abs(printed.cos_phi2 / std::cos(air) - 1) < 1e-12);
+    RC_ASSERT(std::abs(printed.k / ray.path_factor - 1) < 1e-12);
+    RC_ASSERT(std::abs(two.meridional_mm / (nh * std::pow(ratio, 3)) - 1) < 1e-13);
     RC_ASSERT(std::abs(two.sagittal_mm / (nh * ratio) - 1) < 1e-13);
   });
 
@@ -268,7 +279,7 @@ TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]"
   const auto missing_mm = [&](double t, double depth) {
     const double col = camera.center_x_px + t / tangent_per_px(camera);
     const double right = point_at(camera, camera.center_y_px, col, depth).x;
-    return right - published::point_at(camera, camera.center_y_px, col, depth).x;
+    return right - published::point_at(pinhole(camera), camera.center_y_px, col, depth).x;
   };
   CHECK(std::abs(missing_mm(std::tan(std::numbers::pi / 6), 13) - 0.387) < 0.001);
 
@@ -290,7 +301,7 @@ TEST_CASE("the published sine shift is short by the audit's numbers", "[optics]"
   const double row = 100, col = 400;
   for (const double depth : {0.0, 5.0}) {
     const auto right = point_at(camera, row, col, depth);
-    const auto sine = published::point_at(camera, row, col, depth);
+    const auto sine = published::point_at(pinhole(camera), row, col, depth);
     const double shorter =
         depth > 0 ? std::hypot(sine.x, sine.y) / std::hypot(right.x, right.y) : 1;
     CHECK((shorter > 0.99 && shorter <= 1));
@@ -325,7 +336,7 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
           auto c = as<S>(camera);
           c.plate_distance_mm = h;
           const auto ray = ray_at_pixel(c, S(row), S(col));
-          return S(published::SingleHeight::heights(c, ray).meridional_mm * ray.path_factor);
+          return S(pencil_heights(c, ray).meridional_mm * ray.path_factor);
         },
         camera.plate_distance_mm);
     agree([&]<class S>(const S& x) { return sum(point_at(as<S>(camera), S(row), x, S(z))); }, col);

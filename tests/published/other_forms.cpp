@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: MIT
 // Single printed forms: each by its equation computed by hand, and by its known errors.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "fingerpad/depth/neighbour_light.hpp"
-#include "fingerpad/published/absorption.hpp"
-#include "fingerpad/published/camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/neighbour_light.hpp"
 #include "fingerpad/published/normal_force_first_forms.hpp"
@@ -19,67 +16,6 @@
 
 using namespace fingerpad;
 using test::Image;
-using test::Pad;
-
-namespace {
-
-using Known = published::KnownDepth<double>;
-
-/// Pixel of the published pad at a depth, with errors of `red` and `green` in grey levels.
-Known known(
-    const Pad& pad, Index row, Index col, double depth_mm, double red = 0, double green = 0) {
-  auto colour = pad.colour<published::SingleHeight>(row, col, depth_mm, 57);
-  colour.red += red;
-  colour.green += green;
-  return {pad.pencil<published::SingleHeight>(row, col), depth_mm, colour};
-}
-
-}  // namespace
-
-TEST_CASE("published quotient: it is g at every depth", "[published]") {
-  const Pad pad;
-  for (const double depth_mm : {0.5, 3.0, 8.0, 13.0}) {
-    for (const Index col : {28, 40}) {
-      const Known k = known(pad, 24, col, depth_mm);
-      CHECK(published::quotient(pad.fluid, k.pencil, k.colour, k.depth_mm) ==
-            Approx(pad.g(24, col)).epsilon(1e-9));
-    }
-  }
-  // 0 / 0 at the plate: E006
-  const Known none = known(pad, 24, 28, 0);
-  CHECK_FALSE(is_finite(published::quotient(pad.fluid, none.pencil, none.colour, 0.0)));
-}
-
-TEST_CASE("published identification: three equations give back the fluid", "[published]") {
-  Pad pad;
-  for (const auto& [c_red, c_green, kappa] :
-       {std::array{0.0290, 0.0336, 0.9924}, {0.022, 0.031, 0.9}, {0.04, 0.05, 1.1}}) {
-    pad.fluid = {c_red, c_green, kappa};
-    const auto at = [&](double depth_mm) { return known(pad, 24, 28, depth_mm); };
-    const auto found = published::identify_absorption(at(12), std::array{at(1), at(4), at(8)},
-                                                      Absorption<double>{0.03, 0.035, 1.0});
-    CAPTURE(c_red, found.iterations, found.residual);
-    CHECK(found.ok());
-    CHECK(found.fluid.c_red_per_mm == Approx(c_red).epsilon(1e-4));
-    CHECK(found.fluid.c_green_per_mm == Approx(c_green).epsilon(1e-4));
-    CHECK(found.fluid.kappa == Approx(kappa).epsilon(1e-5));
-    CHECK(found.residual < 1e-12);
-  }
-}
-
-TEST_CASE("published identification: depths that are one, and noise", "[published]") {
-  const Pad pad;
-  const Known one = known(pad, 24, 28, 5);
-  const auto same =
-      published::identify_absorption(known(pad, 24, 28, 12), std::array{one, one, one});
-  // the same equation three times: a solution or a refusal, but never these three numbers
-  CHECK_FALSE((same.ok() && std::abs(same.fluid.c_red_per_mm - 0.029) > 1e-6));
-  // 0.03 grey levels at one depth change c_R by a tenth and more, but depths hardly
-  const auto noisy = published::identify_absorption(
-      known(pad, 24, 28, 12),
-      std::array{known(pad, 24, 28, 1, 0.03), known(pad, 24, 28, 4), known(pad, 24, 28, 8)});
-  CHECK(std::abs(noisy.fluid.c_red_per_mm / 0.029 - 1) > 0.1);
-}
 
 TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[published]") {
   std::vector<published::LoggedLight> pixels;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
@@ -15,31 +14,12 @@
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "support/catch.hpp"
+#include "support/image.hpp"
 #include "support/numbers.hpp"
-#include "support/pad.hpp"
 #include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
 using test::Image;
-using test::Pad;
-
-TEST_CASE("published depth: the free pad is found, where one height for all rays is the light's",
-          "[published]") {
-  const Pad pad;
-  const Image<double> free = pad.free_depths();
-  const auto frame = pad.frame<double, published::SingleHeight>(free);
-  const auto reference = published::depth_reference<double>(
-      pad.camera, pad.fluid, frame.red, frame.green, free, published::BoxMean{3});
-  const auto estimate = published::depth_estimator(pad.camera, pad.fluid, reference, 3);
-  auto workspace = estimate.workspace<double>();
-  Image<double> depth(pad.rows, pad.cols);
-  const DepthResult result = estimate(frame.red, frame.green, depth, workspace);
-  CHECK(result.ok());
-  CHECK(result.valid_pixels() > 1500);
-  // 16 halvings of 18 mm and the mean over 3 px of a dome
-  CHECK(depth(24, 28) == Approx(free(24, 28)).margin(0.05));
-  CHECK(depth(24, 20) == Approx(free(24, 20)).margin(0.05));
-}
 
 TEST_CASE("published object motion: Euler angles of steps are added up", "[published]") {
   // a patch of dots rotated about z and then about x: the sum differs from the rotation
@@ -200,15 +180,4 @@ TEST_CASE("published wrench: its columns and rows, and what it refuses", "[publi
   const auto refused = wrench(nowhere, few, 0.01, workspace);
   CHECK(refused.status == WrenchStatus::refused);
   CHECK_FALSE(refused.ok());
-}
-
-TEST_CASE("published scattering per pixel: samples are means over blocks", "[published]") {
-  published::PixelScattering<double> g;
-  g.cols = 6;
-  for (int k = 0; k < 24; ++k) {
-    g.plane.push_back(k);
-  }
-  const auto sampled = g.sampled(2, 3, 2);
-  CHECK(sampled.cols == 3);
-  CHECK(sampled.plane == std::vector<double>{3.5, 5.5, 7.5, 15.5, 17.5, 19.5});
 }

@@ -44,6 +44,7 @@ refuses 2 "RECORDING" --out "$work/out"
 refuses 2 "out" "$recording"
 refuses 2 "A:B" "$recording" --out "$work/out" --frames three
 refuses 2 "smoothing" "$recording" --out "$work/out" --smoothing gauss
+refuses 1 "window_px = 28" "$recording" --out "$work/out" --smoothing 28
 refuses 1 "^replay: $work/none: there is no such folder" "$work/none" --out "$work/out"
 refuses 1 "frames 0 to 10" "$recording" --out "$work/out" --frames 4:90
 refuses 1 "which replay did not write" "$recording" --out "$broken"
@@ -99,15 +100,14 @@ accuracy() {
     fail "replay --smoothing $1"
   local errors
   errors=$("$render" "$recording" --compare "$work/out/depth" | tail -n 1)
-  echo "$1: $errors (at most $2 $3)"
+  echo "$1 px: $errors (at most $2 $3)"
   awk -v inner="$2" -v outer="$3" '{ exit !($2 <= inner && $3 <= outer) }' <<<"$errors" ||
-    fail "$1 is less accurate than that"
+    fail "$1 px are less accurate than that"
 }
 if [[ -n $render ]]; then
   rendered
-  accuracy anchored 0.030 0.040
-  accuracy box 0.045 0.060
-  accuracy none 0.7 0.7
+  accuracy 29 0.030 0.040
+  accuracy 1 0.7 0.7
 else
   "$replay" "$recording" --out "$work/out" --raw --no-pictures --frames "$frames" >/dev/null ||
     fail "replay --raw"

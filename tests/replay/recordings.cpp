@@ -418,8 +418,7 @@ TEST_CASE("16-bit frames give the depth of 8-bit frames") {
   }
   auto options = narrow.options();
   auto options_wide = wide.options();
-  options.smoothing = options_wide.smoothing =
-      GENERATE(replay::Smoothing::none, replay::Smoothing::box, replay::Smoothing::anchored);
+  options.smoothing_px = options_wide.smoothing_px = GENERATE(1, 29);
   replay::run(options);
   replay::run(options_wide);
   for (const char* name : {"000000.tiff", "000002.tiff"}) {

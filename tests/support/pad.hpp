@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "image.hpp"
 
 namespace test {
@@ -88,6 +89,7 @@ struct Pad {
   double brightness = 57;
   double scattering = 0.0163;
   double scattering_loss = 0.05;  ///< relative loss from the axis to the rim
+  bool one_height = false;        ///< of a pencil in both directions, as printed
 
   Pad() {
     camera.pitch_mm = 0.8;
@@ -102,9 +104,12 @@ struct Pad {
   fingerpad::Ray<double> ray(Index row, Index col) const {
     return fingerpad::ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col));
   }
-  template <class Heights = fingerpad::AstigmaticHeights>
   fingerpad::Pencil<double> pencil(Index row, Index col) const {
-    return fingerpad::pencil_of<Heights>(camera, ray(row, col));
+    auto pencil = fingerpad::pencil_of(camera, ray(row, col));
+    if (one_height) {
+      pencil.height.sagittal_mm = pencil.height.meridional_mm;
+    }
+    return pencil;
   }
   double g(Index row, Index col) const {
     const double share = ray(row, col).plate_rho_mm / base_radius_mm();
@@ -134,10 +139,8 @@ struct Pad {
     return brightness * ((row % 7 < 2 && col % 7 < 2) ? 0.4 : 1.0);
   }
 
-  template <class Heights = fingerpad::AstigmaticHeights>
   fingerpad::Colour<double> colour(Index row, Index col, double depth_mm, double bright) const {
-    return fingerpad::colour_at_depth(fluid, pencil<Heights>(row, col), bright, g(row, col),
-                                      depth_mm);
+    return fingerpad::colour_at_depth(fluid, pencil(row, col), bright, g(row, col), depth_mm);
   }
 
   Image<double> free_depths() const {
@@ -158,7 +161,7 @@ struct Pad {
   }
 
   /// Frame of a membrane at these depths, black outside, with `noise` in grey levels.
-  template <class Pixel, class Heights = fingerpad::AstigmaticHeights>
+  template <class Pixel>
   Frame<Pixel> frame(const Image<double>& depth_mm,
                      double noise = 0,
                      std::uint64_t seed = 1) const {
@@ -169,7 +172,7 @@ struct Pad {
         if (depth_mm(i, j) != depth_mm(i, j)) {
           continue;
         }
-        const auto c = colour<Heights>(i, j, depth_mm(i, j), dotted_brightness(i, j));
+        const auto c = colour(i, j, depth_mm(i, j), dotted_brightness(i, j));
         frame.red(i, j) = stored<Pixel>(c.red + (noise > 0 ? noise * random.normal() : 0));
         frame.green(i, j) = stored<Pixel>(c.green + (noise > 0 ? noise * random.normal() : 0));
       }
@@ -178,17 +181,26 @@ struct Pad {
   }
 
   /// Result of fit_reference() for a frame of the free pad without noise.
-  template <class S, class Heights = fingerpad::AstigmaticHeights>
-  auto reference(const fingerpad::GreyScale& scale = {}) const {
+  template <class S>
+  auto reference() const {
     const Image<double> depth = free_depths();
-    const auto free = frame<double, Heights>(depth);
-    return fingerpad::fit_reference<Heights, S>(camera, fluid, free.red, free.green, depth, scale);
+    const auto free = frame<double>(depth);
+    return fingerpad::fit_reference<S>(camera, fluid, free.red, free.green, depth);
   }
 
-  template <class Smoothing, class Inverse, class S, class Heights = fingerpad::AstigmaticHeights>
-  auto estimator(Smoothing smoothing = {}, Inverse inverse = {}) const {
-    return fingerpad::DepthEstimator<Smoothing, Inverse, Heights, S>(
-        camera, fluid, reference<S, Heights>(), smoothing, inverse);
+  template <class S>
+  fingerpad::DepthEstimator<S> estimator(const fingerpad::DepthOptions& options = {}) const {
+    return {camera, fluid, reference<S>(), options};
+  }
+
+  /// The pad in the symbols of the printed method.
+  fingerpad::published::DepthOptions<double> published(int window_px = 29) const {
+    return {{camera.plate_distance_mm, camera.refractive_index, camera.center_y_px,
+             camera.center_x_px, camera.pitch_mm},
+            {fluid.c_red_per_mm, fluid.c_green_per_mm, fluid.kappa},
+            window_px,
+            16,
+            fluid.max_depth_mm};
   }
 };
 
@@ -202,14 +214,15 @@ struct Estimate {
       : depth_mm(rows, cols, S(-1)), status(rows, cols, fingerpad::PixelStatus::ok) {}
 };
 
-template <class S, class Estimator, class Pixel>
-Estimate<S> estimate(const Estimator& estimator,
-                     const Frame<Pixel>& frame,
-                     const fingerpad::GreyScale& scale = fingerpad::grey_scale_of<Pixel>()) {
-  auto workspace = estimator.template workspace<Pixel>(scale);
+template <class S, class Pixel>
+Estimate<S> estimate(fingerpad::DepthEstimator<S>& estimator, const Frame<Pixel>& frame) {
   Estimate<S> e(frame.red.rows(), frame.red.cols());
-  e.result = estimator(frame.red, frame.green, e.depth_mm, e.status, workspace);
+  e.result = estimator(frame.red, frame.green, e.depth_mm, e.status);
   return e;
+}
+template <class S, class Pixel>
+Estimate<S> estimate(fingerpad::DepthEstimator<S>&& estimator, const Frame<Pixel>& frame) {
+  return estimate(estimator, frame);
 }
 
 /// Largest |a - b| where b is a number; infinite if a is NaN there.

@@ -88,7 +88,7 @@ class RubberFrames {
     test_.threshold_per_mm = calibration.fit().threshold_per_mm;
   }
 
-  fingerpad::PadHeights<>::Map heights(const std::string& shape, std::uint64_t seed) const {
+  fingerpad::PadHeights<>::Map heights(const std::string& shape, std::uint64_t seed) {
     const auto depth =
         estimate<float>(estimator_, scene_.frame(scene_.depth(shape), seed)).depth_mm;
     fingerpad::ContactRegion<> region(pad().camera, pad().rows, pad().cols, test_);
@@ -117,7 +117,7 @@ struct RubberGain {
 
 /// Slope from frames, three of each of the three steps that have shapes.
 template <class W>
-RubberGain gain_from_frames(const W& wrench, const RubberFrames& frames) {
+RubberGain gain_from_frames(const W& wrench, RubberFrames& frames) {
   auto work = wrench.workspace();
   double force = 0, force_sq = 0, moment = 0, moment_sq = 0;
   for (const RubberStep& s : rubber_steps()) {

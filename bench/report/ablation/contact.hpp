@@ -85,7 +85,7 @@ class ContactEffects {
  public:
   ContactEffects(const test::Pad& pad,
                  const Image<double>& free_mm,
-                 const fingerpad::DepthEstimator<>& estimator)
+                 fingerpad::DepthEstimator<>& estimator)
       : pad_(pad), estimator_(estimator), free_(free_frames(free_mm)) {}
 
   /// `depth_mm` is of one frame; a second one is made here.
@@ -133,7 +133,7 @@ class ContactEffects {
   }
 
   test::Pad pad_;
-  const fingerpad::DepthEstimator<>& estimator_;
+  fingerpad::DepthEstimator<>& estimator_;
   std::vector<Image<float>> free_;
   fingerpad::OrthographicCamera<double> from_afar_{pad_.camera.center_x_px, pad_.camera.center_y_px,
                                                    pad_.camera.pitch_mm};

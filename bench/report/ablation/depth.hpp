@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Effects on depth: refraction, smoothing, the anchored mean, light from the neighbouring membrane.
-// Errors are of single pixels whose true point is within 17.5 mm of the axis. Pixels without an
-// answer (with NoSmoothing: colours of no depth) are left out.
+// Effects on depth: refraction, smoothing, light from the neighbouring membrane. Errors are of
+// single pixels whose true point is within 17.5 mm of the axis. Pixels without an answer (without
+// smoothing: colours of no depth) are left out.
 //
 // Neighbouring light, whose cost is that of samples of 3 x 3 pixels: frames are rendered as if the
 // membrane were where that light makes it appear, by the law of neighbour_light.hpp with its
@@ -16,7 +16,6 @@
 
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
-#include "fingerpad/published/depth.hpp"
 #include "membranes.hpp"
 
 namespace bench::ablation {
@@ -38,8 +37,8 @@ class DepthEffects {
     straight_estimator_ = std::make_unique<fingerpad::DepthEstimator<>>(
         straight_, pad.fluid, reference_of(pad, straight_, free_mm, known_mm));
     const auto reference = reference_of(pad, pad.camera, free_mm, free_mm);
-    raw_ = std::make_unique<Raw>(pad.camera, pad.fluid, reference);
-    box_ = std::make_unique<Box>(pad.camera, pad.fluid, reference);
+    raw_ = std::make_unique<fingerpad::DepthEstimator<>>(pad.camera, pad.fluid, reference,
+                                                         fingerpad::DepthOptions{.window_px = 1});
     const auto free = measured(estimator_, frame_of(pad, free_mm, 98, 0.25));
     light_ = std::make_unique<fingerpad::NeighbourLightCompensation<>>(
         fingerpad::NeighbourLight<float>(), float(pitch_mm()), free);
@@ -47,11 +46,11 @@ class DepthEffects {
         fingerpad::NeighbourLight<float>(), float(pitch_mm()), free_mm);
   }
 
-  const fingerpad::DepthEstimator<>& estimator() const { return estimator_; }
+  fingerpad::DepthEstimator<>& estimator() { return estimator_; }
 
-  template <class Estimator>
-  static Image<float> measured(const Estimator& estimator, const test::Frame<std::uint8_t>& frame) {
-    return test::estimate<float>(estimator, frame).depth_mm;
+  static Image<float> measured(fingerpad::DepthEstimator<>& estimator,
+                               const test::Frame<std::uint8_t>& frame) {
+    return test::estimate(estimator, frame).depth_mm;
   }
 
   /// Returns the depths as measured with all effects on.
@@ -63,8 +62,6 @@ class DepthEffects {
         .add(place_errors(seen, straight_, measured(*straight_estimator_, frame)));
     smoothing_.with_in(seen.of.scene).add(depth_errors(seen, by_default));
     smoothing_.without_in(seen.of.scene).add(depth_errors(seen, measured(*raw_, frame)));
-    anchor_.with_in(seen.of.scene).add(depth_errors(seen, by_default));
-    anchor_.without_in(seen.of.scene).add(depth_errors(seen, measured(*box_, frame)));
     const auto lit = frame_of(pad_, lit_depths(seen.depth_mm), seen.seed, seen.of.noise);
     auto depth = measured(estimator_, lit);
     neighbours_.without_in(seen.of.scene).add(depth_errors(seen, depth));
@@ -76,16 +73,12 @@ class DepthEffects {
   /// Returns the effects, after measuring their cost on the frame of a press.
   std::vector<Effect> effects(const Seen& press) {
     const auto frame = frame_of(pad_, press.depth_mm, press.seed, press.of.noise);
-    const auto work = [&](const auto& estimator) {
-      auto workspace = std::make_shared<
-          typename std::remove_cvref_t<decltype(estimator)>::template Workspace<std::uint8_t>>(
-          estimator.template workspace<std::uint8_t>());
-      auto depth = std::make_shared<Image<float>>(pad_.rows, pad_.cols);
-      return [&, workspace, depth] { (void)estimator(frame.red, frame.green, *depth, *workspace); };
+    Image<float> out(pad_.rows, pad_.cols);
+    const auto work = [&](auto& estimator) {
+      return [&] { (void)estimator(frame.red, frame.green, out); };
     };
     place_.cost_us = cost_us(work(estimator_), work(*straight_estimator_));
     smoothing_.cost_us = cost_us(work(estimator_), work(*raw_));
-    anchor_.cost_us = cost_us(work(estimator_), work(*box_));
     const auto samples = [](const Image<float>& from) {  // as a fingertip has them
       Image<float> out(from.rows() / 3, from.cols() / 3);
       for (Index i = 0; i < out.rows(); ++i) {
@@ -101,13 +94,10 @@ class DepthEffects {
         samples(measured(estimator_, frame_of(pad_, free_mm_, 98, 0.25))));
     const auto pressed = depth;
     neighbours_.cost_us = cost_us([&] { (void)light(pressed, depth); }, [] {});
-    return {place_, neighbours_, smoothing_, anchor_};
+    return {place_, neighbours_, smoothing_};
   }
 
  private:
-  using Raw = fingerpad::DepthEstimator<fingerpad::NoSmoothing>;
-  using Box = fingerpad::DepthEstimator<fingerpad::published::BoxMean>;
-
   double pitch_mm() const { return 1.1 * pad_.camera.pitch_mm; }
 
   /// Depths with neighbouring light: l with l - m psi_sum(l) = the truth.
@@ -160,8 +150,7 @@ class DepthEffects {
   Image<double> free_mm_;
   fingerpad::DepthEstimator<> estimator_;
   std::unique_ptr<fingerpad::DepthEstimator<>> straight_estimator_;
-  std::unique_ptr<Raw> raw_;
-  std::unique_ptr<Box> box_;
+  std::unique_ptr<fingerpad::DepthEstimator<>> raw_;
   std::unique_ptr<fingerpad::NeighbourLightCompensation<>> light_;
   std::unique_ptr<fingerpad::NeighbourLightCompensation<>> true_light_;  // from true depths
 
@@ -178,13 +167,8 @@ class DepthEffects {
   Effect smoothing_{.name = "smoothing",
                     .quantity = "depth",
                     .unit = "mm",
-                    .on = "`BiasFreeMean`",
-                    .off = "`NoSmoothing`"};
-  Effect anchor_{.name = "anchored mean",
-                 .quantity = "depth",
-                 .unit = "mm",
-                 .on = "`BiasFreeMean`",
-                 .off = "`published::BoxMean`"};
+                    .on = "`DepthOptions` as they are",
+                    .off = "`window_px = 1`"};
 };
 
 }  // namespace bench::ablation

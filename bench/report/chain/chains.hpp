@@ -28,8 +28,6 @@ struct ByDefault : fingerpad::FingertipMethods {
 /// The cheapest methods for a flat contact on a pad with dark dots, whose edge is not placed.
 struct Lean : ByDefault {
   static constexpr int sampling = 4;
-  using Smoothing = fingerpad::AnchoredMean;
-  using Inverse = fingerpad::ExponentialFree<2, 5>;
 };
 /// The same in samples of Step x Step pixels.
 template <class Methods, int Step>

@@ -183,23 +183,20 @@ inline void add_lamp(std::vector<CaseByNature>& rows) {
   const auto& press = scenes("press");
   test::Scene scene;
   const auto reference = scene.reference(scenes.free_mm());
-  const DepthEstimator<> ours(pad.camera, pad.fluid, reference);
-  const auto published_reference = [&] {
-    test::Frame<std::uint16_t> mean(pad.rows, pad.cols);
-    for (Index i = 0; i < pad.rows; ++i) {
-      for (Index j = 0; j < pad.cols; ++j) {
-        if (!std::isnan(scenes.free_mm()(i, j))) {
-          const auto c = pad.colour(i, j, scenes.free_mm()(i, j), 57);
-          mean.red(i, j) = test::stored<std::uint16_t>(c.red);
-          mean.green(i, j) = test::stored<std::uint16_t>(c.green);
-        }
+  DepthEstimator<> ours(pad.camera, pad.fluid, reference);
+  test::Frame<double> mean(pad.rows, pad.cols);
+  for (Index i = 0; i < pad.rows; ++i) {
+    for (Index j = 0; j < pad.cols; ++j) {
+      if (!std::isnan(scenes.free_mm()(i, j))) {
+        const auto c = pad.colour(i, j, scenes.free_mm()(i, j), 57);
+        mean.red(i, j) = c.red;
+        mean.green(i, j) = c.green;
       }
     }
-    return published::depth_reference<float>(pad.camera, pad.fluid, mean.red, mean.green,
-                                             scenes.free_mm());
-  }();
-  const auto old = published::depth_estimator(pad.camera, pad.fluid, published_reference);
-  const auto error_mm = [&](const auto& estimator, double red, double green) {
+  }
+  published::DepthEstimator<> old(pad.published(), mean.red, mean.green, scenes.free_mm());
+  test::Image<float> depth(pad.rows, pad.cols);
+  const auto error_mm = [&](auto& estimator, double red, double green) {
     test::Frame<std::uint8_t> frame = press.frame;
     for (Index i = 0; i < pad.rows; ++i) {
       for (Index j = 0; j < pad.cols; ++j) {
@@ -210,7 +207,7 @@ inline void add_lamp(std::vector<CaseByNature>& rows) {
         frame.green(i, j) = brighter(press.frame.green(i, j), green);
       }
     }
-    const auto depth = test::estimate<float>(estimator, frame).depth_mm;
+    (void)estimator(frame.red, frame.green, depth);
     double sum = 0, count = 0;
     for (std::size_t k = 0; k < depth.cells.size(); ++k) {
       const double off = static_cast<double>(depth.cells[k]) - press.truth_mm.cells[k];

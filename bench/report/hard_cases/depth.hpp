@@ -91,12 +91,18 @@ struct SeenPixel {
 /// The published bisection: as printed from l = 0 (E006), or with the first step repaired.
 template <class S>
 S published_bisection(const SeenPixel<S>& p, bool repaired) {
-  S depth = repaired ? S(p.fluid.max_depth_mm / S(2)) : S(0);
-  S step = repaired ? S(depth / S(2)) : S(p.fluid.max_depth_mm / S(2));
-  for (int i = repaired ? 2 : 0; i < 16; ++i) {
-    const S f = fingerpad::published::quotient(p.fluid, p.light, p.colour, depth);
-    depth = f >= p.g ? S(depth + step) : S(depth - step);
-    step = step / S(2);
+  namespace published = fingerpad::published;
+  const published::Fluid<S> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
+  const S k = p.light.path_factor, h2 = p.light.height.meridional_mm;
+  const auto& [red, green] = p.colour;
+  if (repaired) {
+    return published::bisect(fluid, k, h2, p.g, red, green, p.fluid.max_depth_mm);
+  }
+  S depth = S(0);
+  S step = p.fluid.max_depth_mm / S(2);
+  for (int i = 0; i < 16; ++i, step = step / S(2)) {
+    const S f = published::quotient(fluid, k, h2, red, green, depth);
+    depth = f >= p.g ? depth + step : depth - step;
   }
   return depth;
 }
@@ -152,33 +158,23 @@ inline Row saturated_pixels() {
   return row("depth", "a glare of 2 x 2 saturated pixels in a window of 5; against no glare, mm",
              "such pixels do not count in the mean", []<class S>(S) {
                Forms f;
-               test::Pad pad;
-               pad.scattering_loss = 0;
-               test::Image<double> level(pad.rows, pad.cols, 6.0);
-               auto frame = pad.frame<S>(level);
-               for (fingerpad::Index i = 0; i < pad.rows; ++i) {
-                 for (fingerpad::Index j = 0; j < pad.cols; ++j) {
-                   const auto c = pad.colour(24, 28, 6.0, pad.brightness);
-                   frame.red(i, j) = S(c.red);
-                   frame.green(i, j) = S(c.green);
-                 }
-               }
-               const auto estimator =
-                   pad.estimator<fingerpad::published::BoxMean, fingerpad::Newton, S>({5});
-               const auto clean = test::estimate<S>(estimator, frame);
+               const test::Pad pad;
+               const auto free = pad.free_depths();
+               auto frame = pad.frame<S>(free);
+               auto estimator = pad.estimator<S>({.window_px = 5});
+               const auto clean = test::estimate(estimator, frame);
                for (fingerpad::Index i : {24, 25}) {
                  frame.red(i, 28) = frame.red(i, 29) = S(255);
                  frame.green(i, 28) = frame.green(i, 29) = S(255);
                }
-               const auto glared = test::estimate<S>(estimator, frame);
-               const auto p = as<S>(pad.pencil(24, 28));
+               const auto glared = test::estimate(estimator, frame);
                for (fingerpad::Index i = 22; i < 28; ++i) {
                  for (fingerpad::Index j = 26; j < 32; ++j) {
                    const auto root = fingerpad::newton_depth(
-                       fingerpad::cast<S>(pad.fluid), p, S(pad.g(24, 28)),
+                       fingerpad::cast<S>(pad.fluid), as<S>(pad.pencil(i, j)), S(pad.g(i, j)),
                        Colour<S>{plain_box(frame.red, i, j), plain_box(frame.green, i, j)});
                    if (root.status == PixelStatus::ok) {
-                     f.naive.add_absolute(root.depth_mm, Digits50(6));
+                     f.naive.add_absolute(root.depth_mm, Digits50(free(i, j)));
                    } else {
                      f.naive.answer_none(true);
                    }
@@ -213,8 +209,7 @@ inline Row grazing_rays() {
                  const Digits50 exact = height_by_angles(exact_camera, Digits50(tangent));
                  f.naive.add_relative(height_by_angles(camera, tangent), exact);
                  const auto ray = fingerpad::ray_at_tangent(camera, tangent);
-                 f.stable.add_relative(
-                     fingerpad::published::SingleHeight::heights(camera, ray).meridional_mm, exact);
+                 f.stable.add_relative(fingerpad::pencil_heights(camera, ray).meridional_mm, exact);
                }
                return f;
              });

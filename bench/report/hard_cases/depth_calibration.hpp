@@ -47,8 +47,7 @@ inline Row scattering_at_rim() {
                  red(0, j) = S(c.red);
                  green(0, j) = S(c.green);
                }
-               const auto reference = fingerpad::fit_reference<fingerpad::AstigmaticHeights, S>(
-                   camera, fluid, red, green, depth);
+               const auto reference = fingerpad::fit_reference<S>(camera, fluid, red, green, depth);
                const auto fluid_s = fingerpad::cast<S>(fluid);
                const S delta = fluid_s.c_green_per_mm - fluid_s.c_red_per_mm;
                for (fingerpad::Index j = 0; j < n; ++j) {
@@ -58,8 +57,7 @@ inline Row scattering_at_rim() {
                      fluid_s.kappa * red(0, j) - green(0, j) * std::exp(delta * p.path_factor * l);
                  const S quotient = known / fingerpad::scattered_light(l, fluid_s.c_red_per_mm, p);
                  f.naive.add_relative(quotient, Digits50(0.0163));
-                 const double rho = 0.3 * static_cast<double>(j);
-                 f.stable.add_relative(reference.scattering.at(S(rho * rho)), Digits50(0.0163));
+                 f.stable.add_relative(reference.g(0, j), Digits50(0.0163));
                }
                return f;
              });

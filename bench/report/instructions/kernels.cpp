@@ -31,25 +31,24 @@ bool samples(const test::Frame<std::uint8_t>& frame, int calls) {
   using Sampler = FrameSampler<std::uint8_t, Step>;
   const Index rows = frame.red.rows() / Step, cols = frame.red.cols() / Step;
   test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
-  auto work = Sampler::workspace(frame.red.cols());
+  Sampler sampler(frame.red.cols());
   const auto view = [](test::Image<std::uint16_t>& image) {
     return StridedView<std::uint16_t>(image.cells.data(), image.rows(), image.cols(), image.cols());
   };
   bool done = true;
   for (int k = 0; k < calls; ++k) {
-    done &= Sampler::band(0, rows, frame.red, frame.green, view(red), view(green), work);
+    done &= sampler.band(0, rows, frame.red, frame.green, view(red), view(green));
   }
   return done;
 }
 
 bool depth(const test::Pad& pad, const test::Frame<std::uint8_t>& frame, int calls) {
-  const DepthEstimator estimate(pad.camera, pad.fluid, pad.reference<float>(), BiasFreeMean{15});
-  auto work = estimate.workspace<std::uint8_t>();
+  auto estimate = pad.estimator<float>({.window_px = 15});
   test::Image<float> depth_mm(pad.rows, pad.cols);
   test::Image<PixelStatus> status(pad.rows, pad.cols);
   bool done = true;
   for (int k = 0; k < calls; ++k) {
-    done &= estimate(frame.red, frame.green, depth_mm, status, work).ok();
+    done &= estimate(frame.red, frame.green, depth_mm, status).ok();
   }
   return done;
 }

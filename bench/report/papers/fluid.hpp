@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/published/absorption.hpp"
-#include "fingerpad/published/camera.hpp"
+#include "fingerpad/published/depth.hpp"
 #include "support/pad.hpp"
 #include "table.hpp"
 
@@ -24,7 +23,7 @@ constexpr double colour_noise = 1.0 / 29;
 inline fingerpad::Colour<double> noisy_colour(const test::Pad& pad,
                                               double depth_mm,
                                               test::Random& random) {
-  auto c = pad.colour<fingerpad::published::SingleHeight>(24, 28, depth_mm, 57);
+  auto c = pad.colour(24, 28, depth_mm, 57);
   c.red += colour_noise * random.normal();
   c.green += colour_noise * random.normal();
   return c;
@@ -34,14 +33,14 @@ struct Fluids {
   std::vector<double> c_red, c_green, kappa;
   int no_answer = 0;
 
-  void add(bool ok, const fingerpad::Absorption<double>& fluid) {
+  void add(bool ok, double c_red_per_mm, double c_green_per_mm, double of_light) {
     if (!ok) {
       ++no_answer;
       return;
     }
-    c_red.push_back(fluid.c_red_per_mm);
-    c_green.push_back(fluid.c_green_per_mm);
-    kappa.push_back(fluid.kappa);
+    c_red.push_back(c_red_per_mm);
+    c_green.push_back(c_green_per_mm);
+    kappa.push_back(of_light);
   }
   /// The quartiles, which enclose half of all answers.
   static std::string quartiles(std::vector<double> x) {
@@ -54,23 +53,26 @@ struct Fluids {
 
 inline Section fluid_section() {
   using namespace fingerpad;
-  const test::Pad pad;
-  const auto pencil = pad.pencil<published::SingleHeight>(24, 28);
+  test::Pad pad;
+  pad.one_height = true;
+  const auto pencil = pad.pencil(24, 28);
   test::Random random(3);
   Fluids printed, ours;
   for (int k = 0; k < 200; ++k) {
     const auto at = [&](double depth_mm) {
-      return published::KnownDepth<double>{pencil, depth_mm, noisy_colour(pad, depth_mm, random)};
+      const auto c = noisy_colour(pad, depth_mm, random);
+      return published::KnownPixel<double>{pencil.path_factor, pencil.height.meridional_mm,
+                                           depth_mm, c.red, c.green};
     };
-    const auto found = published::identify_absorption(at(12), std::array{at(1), at(4), at(8)});
-    printed.add(found.ok(), found.fluid);
+    const auto found = published::identify_fluid(at(12), std::array{at(1), at(4), at(8)});
+    printed.add(found.ok(), found.fluid.c_R, found.fluid.c_G, found.fluid.kappa);
     std::vector<DepthSample<double>> samples;
     for (int n = 0; n < 60; ++n) {
       const double depth_mm = 0.5 + 11.5 * n / 59;
       samples.push_back({pencil, 0, depth_mm, noisy_colour(pad, depth_mm, random)});
     }
     const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples));
-    ours.add(fit.ok(), fit.fluid);
+    ours.add(fit.ok(), fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm, fit.fluid.kappa);
   }
   const std::string nearest =
       "200 draws of 0.034 grey levels at 4 depths, default 60 depths; true: ";

@@ -34,10 +34,9 @@ std::string rate(const Work& work, double frames = 1) {
 }
 
 template <class Estimator>
-std::string depth_rate(const Estimator& estimator, const test::Frame<std::uint8_t>& frame) {
-  auto workspace = estimator.template workspace<std::uint8_t>();
+std::string depth_rate(Estimator estimator, const test::Frame<std::uint8_t>& frame) {
   test::Image<float> depth(frame.red.rows(), frame.red.cols());
-  return rate([&] { (void)estimator(frame.red, frame.green, depth, workspace); });
+  return rate([&] { (void)estimator(frame.red, frame.green, depth); });
 }
 
 template <class Region>
@@ -74,13 +73,7 @@ inline Section rates_section() {
   SceneFrames& frames = SceneFrames::instance();
   const test::Pad& pad = frames.pad();
   const SceneFrame& press = frames("press");
-  const test::Scene scene;
-  const DepthEstimator<> depth(pad.camera, pad.fluid, scene.reference(frames.free_mm()));
-  const auto free = scene.frame(frames.free_mm(), 7);
-  const auto old_depth =
-      published::depth_estimator(pad.camera, pad.fluid,
-                                 published::depth_reference<float>(pad.camera, pad.fluid, free.red,
-                                                                   free.green, frames.free_mm()));
+  const DepthEstimator<> depth(pad.camera, pad.fluid, test::Scene().reference(frames.free_mm()));
   auto options = published::wrench_options();
   WrenchOptions<double> by_default;
   options.side_dot_length_mm = by_default.side_dot_length_mm = 0.79995;
@@ -88,7 +81,7 @@ inline Section rates_section() {
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   const std::string nearest = "640 x 480 px, one thread of this machine";
   return {"Rates",
-          {{"shape [S]", "frames a second", "about 1 Hz", depth_rate(old_depth, press.frame),
+          {{"shape [S]", "frames a second", "about 1 Hz", depth_rate(published_depth(), press.frame),
             depth_rate(depth, press.frame), nearest},
            {"contact and location [C]", "frames a second", "about 2 Hz",
             rate([&] { (void)published::contact_by_slides(press.measured_mm, mask); }),

@@ -46,35 +46,23 @@ inline std::vector<double> depth_errors(const SceneFrame& frame,
 }
 
 /// The published depth with a free pad that is the mean of many frames, as in the default.
-class PublishedDepth {
- public:
-  PublishedDepth() : estimate_(estimator()) {}
-  test::Image<float> operator()(const SceneFrame& frame) const {
-    return test::estimate<float>(estimate_, frame.frame).depth_mm;
-  }
-
- private:
-  static fingerpad::published::DepthEstimator<float> estimator() {
-    const SceneFrames& scenes = SceneFrames::instance();
-    const test::Pad& pad = scenes.pad();
-    test::Frame<std::uint16_t> mean(pad.rows, pad.cols);
-    test::Random random(99);
-    for (fingerpad::Index i = 0; i < pad.rows; ++i) {
-      for (fingerpad::Index j = 0; j < pad.cols; ++j) {
-        const double l = scenes.free_mm()(i, j);
-        if (!std::isnan(l)) {
-          const auto c = pad.colour(i, j, l, 57);
-          mean.red(i, j) = test::stored<std::uint16_t>(c.red + 0.25 * random.normal());
-          mean.green(i, j) = test::stored<std::uint16_t>(c.green + 0.25 * random.normal());
-        }
+inline fingerpad::published::DepthEstimator<> published_depth() {
+  const SceneFrames& scenes = SceneFrames::instance();
+  const test::Pad& pad = scenes.pad();
+  test::Frame<double> mean(pad.rows, pad.cols);
+  test::Random random(99);
+  for (fingerpad::Index i = 0; i < pad.rows; ++i) {
+    for (fingerpad::Index j = 0; j < pad.cols; ++j) {
+      const double l = scenes.free_mm()(i, j);
+      if (!std::isnan(l)) {
+        const auto c = pad.colour(i, j, l, 57);
+        mean.red(i, j) = c.red + 0.25 * random.normal();
+        mean.green(i, j) = c.green + 0.25 * random.normal();
       }
     }
-    const auto reference = fingerpad::published::depth_reference<float>(
-        pad.camera, pad.fluid, mean.red, mean.green, scenes.free_mm());
-    return fingerpad::published::depth_estimator(pad.camera, pad.fluid, reference);
   }
-  fingerpad::published::DepthEstimator<float> estimate_;
-};
+  return {pad.published(), mean.red, mean.green, scenes.free_mm()};
+}
 
 /// Standard deviation of a pixel's depth from frame to frame, from two frames of one shape.
 inline double noise_mm(const test::Image<float>& one, const test::Image<float>& other) {
@@ -100,7 +88,12 @@ inline std::string colour_change() {
 
 inline Section shape_section() {
   SceneFrames& frames = SceneFrames::instance();
-  const PublishedDepth published;
+  auto estimate = published_depth();
+  const auto published = [&](const SceneFrame& frame) {
+    test::Image<float> depth(frame.truth_mm.rows(), frame.truth_mm.cols());
+    (void)estimate(frame.frame.red, frame.frame.green, depth);
+    return depth;
+  };
   Section section{"Shape [S]", {}};
   const auto add = [&](const std::string& experiment, const std::string& printed,
                        const std::string& name, const std::string& nearest, bool in_contact) {

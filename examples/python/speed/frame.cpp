@@ -59,9 +59,8 @@ int main(int argc, char** argv) {
                                          .center_y_px = 0.5 * static_cast<double>(rows - 1)};
   const fingerpad::Absorption<double> fluid;
   const auto reference = fit_reference(camera, fluid, pad_red, pad_green, shape);
-  const fingerpad::DepthEstimator<> estimate(camera, fluid, reference);
+  fingerpad::DepthEstimator<> estimate(camera, fluid, reference);
   fingerpad::ContactRegion<> region(camera, rows, cols, {.free_apex_mm = 13.03});
-  auto work = estimate.workspace<std::uint8_t>();
   std::vector<float> depth_cells(shape_cells.size());
   std::vector<fingerpad::PixelStatus> statuses(shape_cells.size());
   std::vector<std::uint8_t> mask_cells(shape_cells.size());
@@ -69,7 +68,7 @@ int main(int argc, char** argv) {
   const StridedView<fingerpad::PixelStatus> status(statuses.data(), rows, cols, cols);
   const StridedView<std::uint8_t> mask(mask_cells.data(), rows, cols, cols);
   while (std::cin.get() == '\n') {
-    const double depth_s = seconds_of([&] { (void)estimate(red, green, depth, status, work); });
+    const double depth_s = seconds_of([&] { (void)estimate(red, green, depth, status); });
     const double contact_s = seconds_of([&] { (void)region(depth, mask); });
     std::printf("%.9f %.9f %.9f\n", depth_s, contact_s, depth_s + contact_s);
     std::fflush(stdout);

@@ -45,7 +45,7 @@ fingerpad::Absorption<double> read_absorption(const Section& root) {
   absorption.c_green_per_mm = section.number("c_green_per_mm");
   absorption.kappa = section.number("kappa");
   absorption.max_depth_mm = section.number("max_depth_mm");
-  expects_valid(absorption);
+  fingerpad::require(absorption);
   return absorption;
 }
 

@@ -12,7 +12,6 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
-#include "fingerpad/published/depth.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/steps/fingertip_options.hpp"
 
@@ -30,15 +29,14 @@ bool has_cells(const cv::Mat& image) {
 
 using FingertipOptions = fingerpad::FingertipOptions<Reference>;
 
-template <class SmoothingPolicy, class PixelType>
+template <class PixelType>
 struct Methods : fingerpad::FingertipMethods {
   static constexpr bool has_neighbour_light = true;
   static constexpr int sampling = 1;  // depth is written at every pixel
-  using Smoothing = SmoothingPolicy;
   using Pixel = PixelType;
 };
-template <class SmoothingPolicy, class PixelType>
-struct DepthAlone : Methods<SmoothingPolicy, PixelType> {
+template <class PixelType>
+struct DepthAlone : Methods<PixelType> {
   static constexpr bool has_contact = false;
 };
 
@@ -54,24 +52,21 @@ cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
 }
 
 /// Depth of the free pad, whose frames may have another pixel type than those of the recording.
-template <class SmoothingPolicy>
 cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& image) {
   const auto depth = [&]<class Pixel>(Pixel) {
-    fingerpad::Fingertip<Reference, DepthAlone<SmoothingPolicy, Pixel>> fingertip(options);
+    fingerpad::Fingertip<Reference, DepthAlone<Pixel>> fingertip(options);
     (void)fingertip(color_of<Pixel>(image), DotGrid(), SpaceGrid(), 0);
     return copy_of(fingertip.depth_mm());
   };
   return has_cells<std::uint16_t>(image) ? depth(std::uint16_t()) : depth(std::uint8_t());
 }
 
-template <class SmoothingPolicy>
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
   const cv::Size size = recording.reference.size();
   fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, size.height, size.width);
   recording.free_frames.seek(0);
   for (int frame = 0; frame < recording.free_frames.size(); ++frame) {
-    calibration.add(
-        free_depth_of<SmoothingPolicy>(options, next_frame(recording.free_frames, size)));
+    calibration.add(free_depth_of(options, next_frame(recording.free_frames, size)));
   }
   return calibration.fit().threshold_per_mm;
 }
@@ -104,7 +99,7 @@ struct Watch {
   double operator[](FingertipStage stage) const { return ms[static_cast<std::size_t>(stage)]; }
 };
 
-template <class SmoothingPolicy, class Pixel>
+template <class Pixel>
 class Step : public FingertipStep {
  public:
   Step(const Recording& recording, const FingertipOptions& options)
@@ -131,7 +126,7 @@ class Step : public FingertipStep {
     out.contact_mask = copy_of(fingertip_.contact_mask());
     out.valid_pixels = touch.depth.valid_pixels();
     out.pad_pixels = touch.depth.pad_pixels;
-    out.pad_has_changed = touch.depth.status == fingerpad::DepthStatus::pad_has_changed;
+    out.pad_has_changed = touch.depth.status == fingerpad::FrameStatus::not_of_this_pad;
     out.contact = touch.contact;
     out.force = force_of(touch);
     if (with_dots_) {
@@ -219,51 +214,34 @@ class Step : public FingertipStep {
 
   const Recording& recording_;
   bool with_dots_;
-  fingerpad::Fingertip<Reference, Methods<SmoothingPolicy, Pixel>> fingertip_;
+  fingerpad::Fingertip<Reference, Methods<Pixel>> fingertip_;
   std::vector<int> border_order_;  ///< empty without six-axis force
   SpaceGrid no_side_dots_;
 };
-
-template <class SmoothingPolicy>
-std::unique_ptr<FingertipStep> make(Recording& recording,
-                                    const cv::Mat& first_image,
-                                    int window_px,
-                                    const DotGrid& initial_px) {
-  const Sensor& sensor = recording.sensor;
-  FingertipSettings settings = fingertip_settings(recording, initial_px);
-  FingertipOptions& options = settings.options;
-  options.smoothing_px = window_px;
-  cv::Mat_<float> free_depth_mm;
-  if (const auto light = std::exchange(options.neighbour_light, std::nullopt)) {
-    free_depth_mm = free_depth_of<SmoothingPolicy>(options, recording.reference);
-    options.neighbour_light = light;
-    options.free_depth_mm = fingerpad::as_view(std::as_const(free_depth_mm));
-  }
-  if (!sensor.contact_threshold_per_mm && recording.free_frames.size() > 0) {
-    options.contact.threshold_per_mm = contact_threshold_of<SmoothingPolicy>(recording, options);
-  }
-  if (has_cells<std::uint16_t>(first_image)) {
-    return std::make_unique<Step<SmoothingPolicy, std::uint16_t>>(recording, options);
-  }
-  return std::make_unique<Step<SmoothingPolicy, std::uint8_t>>(recording, options);
-}
 
 }  // namespace
 
 std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
                                                    const cv::Mat& first_image,
-                                                   Smoothing smoothing,
-                                                   int window_px,
+                                                   int smoothing_px,
                                                    const DotGrid& initial_px) {
-  switch (smoothing) {
-    case Smoothing::none:
-      return make<fingerpad::NoSmoothing>(recording, first_image, window_px, initial_px);
-    case Smoothing::box:
-      return make<fingerpad::published::BoxMean>(recording, first_image, window_px, initial_px);
-    case Smoothing::anchored:
-      break;
+  const Sensor& sensor = recording.sensor;
+  FingertipSettings settings = fingertip_settings(recording, initial_px);
+  FingertipOptions& options = settings.options;
+  options.smoothing_px = smoothing_px;
+  cv::Mat_<float> free_depth_mm;
+  if (const auto light = std::exchange(options.neighbour_light, std::nullopt)) {
+    free_depth_mm = free_depth_of(options, recording.reference);
+    options.neighbour_light = light;
+    options.free_depth_mm = fingerpad::as_view(std::as_const(free_depth_mm));
   }
-  return make<fingerpad::BiasFreeMean>(recording, first_image, window_px, initial_px);
+  if (!sensor.contact_threshold_per_mm && recording.free_frames.size() > 0) {
+    options.contact.threshold_per_mm = contact_threshold_of(recording, options);
+  }
+  if (has_cells<std::uint16_t>(first_image)) {
+    return std::make_unique<Step<std::uint16_t>>(recording, options);
+  }
+  return std::make_unique<Step<std::uint8_t>>(recording, options);
 }
 
 }  // namespace replay

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Applies the library's pipeline/fingertip.hpp to a frame with its dots, side dots and pressure;
-// only this step uses that header. Pixel type and smoothing are template arguments of the library,
-// but are known here only at run time.
+// only this step uses that header. The pixel type is a template argument of the library, but is
+// known here only at run time.
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -11,8 +11,6 @@
 #include "replay/steps/frame.hpp"
 
 namespace replay {
-
-enum class Smoothing { none, box, anchored };
 
 struct FingertipFrame {
   cv::Mat_<float> depth_mm;      ///< NaN where there is no depth
@@ -44,8 +42,7 @@ class FingertipStep {
 /// must outlive the step. Throws fingerpad::parameter_error.
 std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
                                                    const cv::Mat& first_image,
-                                                   Smoothing smoothing,
-                                                   int window_px,
+                                                   int smoothing_px,
                                                    const DotGrid& initial_px);
 
 }  // namespace replay

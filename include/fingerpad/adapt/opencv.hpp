@@ -38,10 +38,12 @@ struct grid_traits<M> {
 };
 
 /// A view of channel `c` of `image` (B = 0, G = 1, R = 2 as OpenCV reads colour files). T must be
-/// the type of its values. Refuses another type or a missing channel (parameter_error). The image
-/// must outlive the view.
+/// the type of its values. Refuses an empty image, another type and a missing channel
+/// (parameter_error). The image must outlive the view.
 template <class T>
 StridedView<T> channel(cv::Mat& image, int c) {
+  expects(!image.empty(), "channel", "pixels of the image", static_cast<long long>(image.total()),
+          "> 0: was the image read?");
   expects(image.depth() == cv::DataType<std::remove_const_t<T>>::depth, "channel", "image.depth()",
           static_cast<long long>(image.depth()), "the depth of the requested type");
   expects(c >= 0 && c < image.channels(), "channel", "c", static_cast<long long>(c),

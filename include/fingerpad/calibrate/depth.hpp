@@ -58,7 +58,7 @@ std::string check(const DepthSample<S>& s) {
 }
 
 /// The sample of pixel (row, col).
-template <class Heights = AstigmaticHeights, scalar S>
+template <scalar S>
 DepthSample<S> depth_sample(const Camera<S>& camera,
                             const S& row,
                             const S& col,
@@ -66,7 +66,7 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
                             const Colour<S>& colour,
                             const S& weight = S(1)) {
   const Ray<S> ray = ray_at_pixel(camera, row, col);
-  return {pencil_of<Heights>(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
+  return {pencil_of(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
 }
 
 /// The fluid and its uncertainty. Parameters are in the order c_red, delta, kappa, g_0, ...

@@ -14,6 +14,7 @@
 // dots. The second equation does not contain B, so these do not affect the depth. Colours are grey
 // levels, lengths mm, g grey levels per mm^2.
 #include <cmath>
+#include <string>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -32,17 +33,14 @@ struct Absorption {
   S max_depth_mm = S(14);  ///< the largest depth searched, > 0
 };
 
-/// Refuses impossible values (parameter_error).
+/// Says which value is out of range; "" if none is.
 template <scalar S>
-void expects_valid(const Absorption<S>& fluid) {
-  expects(is_finite(fluid.c_red_per_mm) && fluid.c_red_per_mm > S(0), "Absorption", "c_red_per_mm",
-          fluid.c_red_per_mm, "finite and > 0");
-  expects(is_finite(fluid.c_green_per_mm) && !(fluid.c_green_per_mm < fluid.c_red_per_mm),
-          "Absorption", "c_green_per_mm", fluid.c_green_per_mm, "finite and >= c_red_per_mm");
-  expects(is_finite(fluid.kappa) && fluid.kappa > S(0), "Absorption", "kappa", fluid.kappa,
-          "finite and > 0");
-  expects(is_finite(fluid.max_depth_mm) && fluid.max_depth_mm > S(0), "Absorption", "max_depth_mm",
-          fluid.max_depth_mm, "finite and > 0");
+std::string check(const Absorption<S>& fluid) {
+  const auto c_red_per_mm = static_cast<double>(value(fluid.c_red_per_mm));
+  return check("Absorption", {{"c_red_per_mm", fluid.c_red_per_mm, positive},
+                              {"c_green_per_mm", fluid.c_green_per_mm, at_least(c_red_per_mm)},
+                              {"kappa", fluid.kappa, positive},
+                              {"max_depth_mm", fluid.max_depth_mm, positive}});
 }
 
 /// The same fluid in another scalar.
@@ -54,14 +52,14 @@ Absorption<To> cast(const Absorption<From>& f) {
 /// The pencil of light that reaches one pixel.
 template <scalar S = double>
 struct Pencil {
-  S path_factor;                     ///< k = 1 + 1/cos(phi_fluid), >= 2
+  S path_factor;            ///< k = 1 + 1/cos(phi_fluid), >= 2
   PencilHeights<S> height;  ///< of the points from which the light appears to come
 };
 
-/// The pencil of a ray, with one of the height policies of optics/camera.hpp.
-template <class Heights = AstigmaticHeights, scalar S>
+/// The pencil of a ray.
+template <scalar S>
 Pencil<S> pencil_of(const Camera<S>& camera, const Ray<S>& ray) {
-  return {ray.path_factor, Heights::heights(camera, ray)};
+  return {ray.path_factor, pencil_heights(camera, ray)};
 }
 
 namespace detail {
@@ -81,7 +79,7 @@ struct ExponentialMoments {
 template <scalar S>
 ExponentialMoments<S> exponential_moments(const S& t) {
   using std::exp;
-  const S decay = exp(S(-t));
+  const S decay = exp(-t);
   if (value(t) < scalar_real_t<S>(4)) {
     S term = S(1) / S(3);
     S sum = term;
@@ -113,16 +111,16 @@ S scattered_light(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil)
   const S& h_m = pencil.height.meridional_mm;
   const S& h_s = pencil.height.sagittal_mm;
   const S sum = h_m * h_s * m.zeroth + depth_mm * ((h_m + h_s) * m.first + depth_mm * m.second);
-  return S(c_per_mm * depth_mm * sum);
+  return c_per_mm * depth_mm * sum;
 }
 
 /// dW/dl = c (l + h_m)(l + h_s) exp(-c k l), in mm.
 template <scalar S>
 S scattered_light_slope(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
   using std::exp;
-  const S decay = exp(S(-(c_per_mm * (pencil.path_factor * depth_mm))));
-  return S(c_per_mm * (depth_mm + pencil.height.meridional_mm) *
-           (depth_mm + pencil.height.sagittal_mm) * decay);
+  const S decay = exp(-(c_per_mm * (pencil.path_factor * depth_mm)));
+  return c_per_mm * (depth_mm + pencil.height.meridional_mm) *
+         (depth_mm + pencil.height.sagittal_mm) * decay;
 }
 
 /// Red and green of one pixel, in grey levels.
@@ -143,37 +141,34 @@ Colour<S> colour_at_depth(const Absorption<S>& fluid,
   using std::exp;
   const S path = pencil.path_factor * depth_mm;
   const S scattered = scattering * scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
-  const S green = brightness * exp(S(-(fluid.c_green_per_mm * path)));
-  const S red = (brightness * exp(S(-(fluid.c_red_per_mm * path))) + scattered) / fluid.kappa;
+  const S green = brightness * exp(-(fluid.c_green_per_mm * path));
+  const S red = (brightness * exp(-(fluid.c_red_per_mm * path)) + scattered) / fluid.kappa;
   return {red, green};
 }
 
-namespace detail {
-
+/// A function's value and derivative.
 template <scalar S>
 struct ValueAndSlope {
   S value;
   S slope;
 };
 
-}  // namespace detail
-
 /// The depth equation F(l) = green exp(delta k l) - kappa red + g W(l) and its slope. F rises
 /// strictly where green >= 0, g > 0 and delta >= 0, so it has at most one root. It replaces the
 /// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
 template <scalar S>
-detail::ValueAndSlope<S> depth_equation(const Absorption<S>& fluid,
-                                        const Pencil<S>& pencil,
-                                        const S& scattering,
-                                        const Colour<S>& colour,
-                                        const S& depth_mm) {
+ValueAndSlope<S> depth_equation(const Absorption<S>& fluid,
+                                const Pencil<S>& pencil,
+                                const S& scattering,
+                                const Colour<S>& colour,
+                                const S& depth_mm) {
   using std::exp;
   const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * pencil.path_factor;
-  const S membrane = colour.green * exp(S(delta_k * depth_mm));
+  const S membrane = colour.green * exp(delta_k * depth_mm);
   const S w = scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
   const S w_slope = scattered_light_slope(depth_mm, fluid.c_red_per_mm, pencil);
-  return {S(membrane - fluid.kappa * colour.red + scattering * w),
-          S(membrane * delta_k + scattering * w_slope)};
+  return {membrane - fluid.kappa * colour.red + scattering * w,
+          membrane * delta_k + scattering * w_slope};
 }
 
 }  // namespace v0

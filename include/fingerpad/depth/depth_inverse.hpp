@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Depth of one pixel from its colour: the root of the depth equation F(l) = 0 in [0, max_depth]. It
-// is found by Newton's method in any scalar, or by polynomials for whole rows of float or double.
+// Depth of one pixel from its colour: the root of the depth equation F(l) = 0 in [0, max_depth], in
+// any scalar. Whole frames go by polynomials, depth/depth.hpp.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -91,31 +91,6 @@ DepthRoot<S> newton_depth(const Absorption<S>& fluid,
   }
   return {depth, PixelStatus::ok};
 }
-
-/// Newton's method on the exact equation, to the roundoff of any scalar. Use it for scalars other
-/// than float and double, for derivatives, and as the reference for other methods.
-struct Newton {
-  template <scalar S>
-  DepthRoot<S> operator()(const Absorption<S>& fluid,
-                          const Pencil<S>& pencil,
-                          const S& scattering,
-                          const Colour<S>& colour) const {
-    return newton_depth(fluid, pencil, scattering, colour);
-  }
-};
-inline void expects_valid(const Newton&) {}
-
-/// Polynomials in place of the exponentials, computed in vectors of pixels. Use it for float and
-/// double.
-///   Order   the error of the start, 0.03 to 0.06 mm, is raised to this power by a Newton step for
-///           each factor 2 and a Halley step for each factor 3
-///   Degree  of the polynomials in depth, Radial of those in rho^2
-/// For depths up to 14 mm of the published fluid <2, 5> stays below 1e-4 mm and is the fastest; the
-/// default stays below 1e-5 mm; <3, 6, 4> suits wide-angle cameras and strongly varying g;
-/// <9, 12, 8> in double stays below 1e-12 mm. A sensor for which the error of the polynomials
-/// exceeds 0.005 mm is refused.
-template <int Order = 3, int Degree = 6, int Radial = 3>
-struct ExponentialFree {};
 
 }  // namespace v0
 }  // namespace fingerpad

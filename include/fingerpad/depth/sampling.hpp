@@ -20,9 +20,8 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/detail/frame_rows.hpp"
+#include "fingerpad/depth/detail/colour_rows.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
-#include "fingerpad/image/detail/window_means.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -35,7 +34,7 @@ using sample_t = std::conditional_t<std::same_as<Pixel, std::uint8_t>, std::uint
 /// Where a position in pixels lies in samples, along one axis: pixel 0 is the first of sample 0.
 template <scalar S>
 S sampled_px(const S& px, int step) {
-  return S((px - S(step - 1) / S(2)) / S(step));
+  return (px - S(step - 1) / S(2)) / S(step);
 }
 
 /// The camera whose pixels are the samples.
@@ -44,70 +43,68 @@ Camera<S> sampled(const Camera<S>& camera, int step) {
   Camera<S> out = camera;
   out.center_x_px = sampled_px(camera.center_x_px, step);
   out.center_y_px = sampled_px(camera.center_y_px, step);
-  out.pitch_mm = S(camera.pitch_mm * S(step));
+  out.pitch_mm = camera.pitch_mm * S(step);
   return out;
 }
 
-/// The free pad as that camera sees it. A sample is of the pad where all its pixels are. Refuses
-/// steps outside of 1..16 and larger than the image (parameter_error).
-template <scalar S, class Scattering, class Heights>
-DepthReference<S, Scattering, Heights> sampled(
-    const DepthReference<S, Scattering, Heights>& reference, int step) {
+/// The free pad as that camera sees it: means of each plane. A sample is of the pad where all its
+/// pixels are. Refuses steps outside of 1..16 and larger than the image (parameter_error).
+template <scalar S>
+DepthReference<S> sampled(const DepthReference<S>& reference, int step) {
   expects(step >= 1 && step <= 16, "sampled", "step", step, "in 1..16");
   expects(step <= reference.rows && step <= reference.cols, "sampled", "step", step,
           "<= the rows and columns of the reference");
-  auto out = reference;
+  DepthReference<S> out = reference;
   out.rows = reference.rows / step;
   out.cols = reference.cols / step;
-  out.depth_mm.clear();
-  out.scattering = reference.scattering.sampled(out.rows, out.cols, step);
-  for (Index i = 0; i < out.rows; ++i) {
-    for (Index j = 0; j < out.cols; ++j) {
+  const auto means_of = [&](const std::vector<S>& plane) {
+    std::vector<S> means;
+    for (Index k = 0; !plane.empty() && k < out.rows * out.cols; ++k) {
+      const Index first = k / out.cols * step * reference.cols + k % out.cols * step;
       S sum = S(0);
-      for (Index k = 0; k < step * step; ++k) {
-        sum = sum + reference.depth(i * step + k / step, j * step + k % step);
+      for (Index m = 0; m < step * step; ++m) {
+        sum = sum + plane[static_cast<std::size_t>(first + m / step * reference.cols + m % step)];
       }
-      out.depth_mm.push_back(S(sum / S(step * step)));
+      means.push_back(sum / S(step * step));
     }
-  }
+    return means;
+  };
+  out.depth_mm = means_of(reference.depth_mm);
+  out.scattering = means_of(reference.scattering);
+  out.red_gain = means_of(reference.red_gain);
   return out;
 }
 
 /// Means over Step x Step pixels, leaving out pixels that carry no information, in
 /// grey_scale_of<sample_t<Pixel>>(). If all are left out, the sample is the brightest value if one
-/// is saturated, else NaN if one is NaN, else 0, and carries no information either. No allocation
-/// per frame; O(rows cols).
+/// is saturated, else NaN if one is NaN, else 0, and carries no information either. Use one object
+/// per thread. No allocation per frame; O(rows cols).
 template <class Pixel, int Step>
 class FrameSampler {
   static_assert(Step >= 1 && Step <= 16, "the sampling step is in 1..16");
 
  public:
   using Sample = sample_t<Pixel>;
-  /// Step rows of both channels; one per thread.
-  using Workspace = std::vector<Pixel>;
 
   /// For frames of so many columns, or fewer.
-  static Workspace workspace(Index cols) {
-    return Workspace(static_cast<std::size_t>(2 * Step * cols));
-  }
+  explicit FrameSampler(Index cols)
+      : cols_(cols), red_(static_cast<std::size_t>(Step * cols)), green_(red_) {}
 
-  /// Rows [first, last) of the samples of a frame; false, and nothing written, where grids or
-  /// workspace have another size.
+  /// Rows [first, last) of the samples of a frame; false, and nothing written, where a grid has
+  /// another size.
   template <grid Red, grid Green>
-  static bool band(Index first,
-                   Index last,
-                   const Red& red,
-                   const Green& green,
-                   const StridedView<Sample>& to_red,
-                   const StridedView<Sample>& to_green,
-                   Workspace& workspace) {
+  bool band(Index first,
+            Index last,
+            const Red& red,
+            const Green& green,
+            const StridedView<Sample>& to_red,
+            const StridedView<Sample>& to_green) {
     const auto from_red = as_view(red);
     const auto from_green = as_view(green);
     const Index cols = from_red.cols();
-    if (!same_size(from_red, from_green) || !same_size(to_red, to_green) ||
+    if (!same_size(from_red, from_green) || !same_size(to_red, to_green) || cols > cols_ ||
         to_red.rows() != from_red.rows() / Step || to_red.cols() != cols / Step || first < 0 ||
-        last < first || last > to_red.rows() ||
-        workspace.size() < static_cast<std::size_t>(2 * Step * cols)) {
+        last < first || last > to_red.rows()) {
       return false;
     }
     for (Index i = first; i < last; ++i) {
@@ -115,17 +112,17 @@ class FrameSampler {
                     detail::plain_rows<std::remove_const_t<decltype(from_green)>, Pixel>) {
         if (from_red.col_stride() == 1 && from_green.col_stride() == 1 &&
             from_red.row_stride() == from_green.row_stride()) {
-          FrameSampler(from_red.row(i * Step), from_green.row(i * Step), from_red.row_stride())
-              .average(to_red, to_green, i);
+          const Rows in_place{from_red.row(i * Step), from_green.row(i * Step),
+                              from_red.row_stride()};
+          average(in_place, to_red, to_green, i);
           continue;
         }
       }
-      Pixel* reds = workspace.data();
-      Pixel* greens = reds + Step * cols;
       for (Index k = 0; k < Step; ++k) {
-        detail::load_pixels(from_red, from_green, i * Step + k, reds + k * cols, greens + k * cols);
+        detail::load_pixels(from_red, from_green, i * Step + k, red_.data() + k * cols,
+                            green_.data() + k * cols);
       }
-      FrameSampler(reds, greens, cols).average(to_red, to_green, i);
+      average({red_.data(), green_.data(), cols}, to_red, to_green, i);
     }
     return true;
   }
@@ -135,29 +132,33 @@ class FrameSampler {
   static constexpr std::size_t block = 64;  ///< cells of a loop whose length the compiler knows
 
   /// Step rows of each channel, `stride` pixels apart.
-  FrameSampler(const Pixel* red, const Pixel* green, Index stride)
-      : red_(red), green_(green), stride_(stride) {}
+  struct Rows {
+    const Pixel* red;
+    const Pixel* green;
+    Index stride;
+  };
 
-  void average(const StridedView<Sample>& to_red,
-               const StridedView<Sample>& to_green,
-               Index row) const {
+  static void average(const Rows& from,
+                      const StridedView<Sample>& to_red,
+                      const StridedView<Sample>& to_green,
+                      Index row) {
     const Index cols = to_red.cols();
     Index j = 0;
     if constexpr (std::same_as<Pixel, std::uint8_t>) {
       constexpr auto n = static_cast<Index>(block);
       if (to_red.col_stride() == 1 && to_green.col_stride() == 1 && cols >= n) {
         for (; j < cols; j += n) {
-          const Index from = (std::min)(j, cols - n);  // the last ones twice
-          average_block(from, to_red.row(row) + from, to_green.row(row) + from);
+          const Index first = (std::min)(j, cols - n);  // the last ones twice
+          average_block(from, first, to_red.row(row) + first, to_green.row(row) + first);
         }
       }
     }
     for (; j < cols; ++j) {
-      one(j, to_red(row, j), to_green(row, j));
+      one(from, j, to_red(row, j), to_green(row, j));
     }
   }
 
-  void one(Index col, Sample& to_red, Sample& to_green) const {
+  static void one(const Rows& from, Index col, Sample& to_red, Sample& to_green) {
     using Sum = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
     Sum red = Sum(0);
     Sum green = Sum(0);
@@ -165,15 +166,14 @@ class FrameSampler {
     bool saturated = false;
     bool no_number = false;
     for (Index k = 0; k < Step * Step; ++k) {
-      const Index at = k / Step * stride_ + col * Step + k % Step;
-      const auto r = static_cast<double>(value(real_of_t<Pixel>(red_[at])));
-      const auto g = static_cast<double>(value(real_of_t<Pixel>(green_[at])));
+      const Index at = k / Step * from.stride + col * Step + k % Step;
+      const auto r = static_cast<double>(from.red[at]), g = static_cast<double>(from.green[at]);
       saturated = saturated || r >= scale.saturated || g >= scale.saturated;
       no_number = no_number || r != r || g != g;
-      if (r > scale.dark && g > scale.dark && r < scale.saturated && g < scale.saturated) {
+      if (scale.counts(r) && scale.counts(g)) {
         ++count;
-        red = Sum(red + Sum(red_[at]));
-        green = Sum(green + Sum(green_[at]));
+        red = red + Sum(from.red[at]);
+        green = green + Sum(from.green[at]);
       }
     }
     if (count == 0) {
@@ -238,12 +238,12 @@ class FrameSampler {
   };
 
   /// `block` samples from column `col` on.
-  void average_block(Index col, Sample* to_red, Sample* to_green) const {
+  static void average_block(const Rows& rows, Index col, Sample* to_red, Sample* to_green) {
     Columns columns;
     for (Index k = 0; k < Step; ++k) {
       for (std::size_t at = 0; at < block * Step; at += block) {
-        const Index from = k * stride_ + col * Step + static_cast<Index>(at);
-        columns.add(red_ + from, green_ + from, at);
+        const Index from = k * rows.stride + col * Step + static_cast<Index>(at);
+        columns.add(rows.red + from, rows.green + from, at);
       }
     }
     std::uint8_t lost = 0;
@@ -275,9 +275,8 @@ class FrameSampler {
     (std::make_index_sequence<std::size_t(Step)>{});
   }
 
-  const Pixel* red_;
-  const Pixel* green_;
-  Index stride_;
+  Index cols_;
+  std::vector<Pixel> red_, green_;  // Step rows that lie elsewhere in the frame
 };
 
 }  // namespace v0

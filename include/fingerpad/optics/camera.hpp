@@ -175,14 +175,6 @@ PencilHeights<S> pencil_heights(const Camera<S>& camera, const Ray<S>& ray) {
   return {meridional, sagittal};
 }
 
-/// pencil_heights as the policy of a reference.
-struct AstigmaticHeights {
-  template <scalar S>
-  static PencilHeights<S> heights(const Camera<S>& camera, const Ray<S>& ray) {
-    return pencil_heights(camera, ray);
-  }
-};
-
 /// The point seen at (row, col) when its depth is depth_mm; NaN depth gives NaN. Ito et al. 2011,
 /// eq. 13, with tan(phi_fluid) in the place of its sine, because z is a depth (E019).
 template <scalar S>

@@ -77,8 +77,6 @@ struct FingertipMethods {
   /// pixel.
   static constexpr int sampling = 3;
 
-  using Smoothing = BiasFreeMean;
-  using Inverse = ExponentialFree<>;
   using Solver = LeastSquares;
   using Pixel = std::uint8_t;          ///< cell of the frame's channels
   using Executor = detail::OneThread;  ///< runs the work of a frame
@@ -93,7 +91,7 @@ struct FingertipOptions {
   Reference reference;  ///< of the free pad, from fit_reference()
   Index rows = 0;       ///< of a frame, px
   Index cols = 0;
-  int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109
+  int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109; 1: no smoothing
   std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not removed
   /// Depth of the free pad, for the neighbour light, from a fingertip without it.
   StridedView<const float> free_depth_mm = {};

@@ -26,19 +26,12 @@ namespace detail {
 template <class Options, class Methods>
 struct FingertipImage {
   using Executor = typename Methods::Executor;
-  using Estimator = decltype(DepthEstimator(std::declval<Camera<double>>(),
-                                            std::declval<Absorption<double>>(),
-                                            std::declval<const Options&>().reference,
-                                            std::declval<typename Methods::Smoothing>(),
-                                            std::declval<typename Methods::Inverse>()));
   static constexpr int step = Methods::sampling;
   using Samples =
       FrameSamples<decltype(Options::reference), typename Methods::Pixel, step, Executor::threads>;
-  using Workspace = typename Estimator::template Workspace<typename Samples::Cell>;
   Index rows, cols;       // of frames
   Camera<double> camera;  // of samples, like all members below
-  Estimator estimate;
-  std::vector<Workspace> work;  // one per thread
+  std::vector<DepthEstimator<float>> estimate;  // one per thread
   Samples samples;
   OwnedGrid<float> depth;
   OwnedGrid<PixelStatus> status;
@@ -47,25 +40,16 @@ struct FingertipImage {
       : rows(o.rows),
         cols(o.cols),
         camera(sampled(o.camera, step)),
-        estimate(camera, o.fluid, sampled(o.reference, step), smoothing(o)),
-        work(Executor::threads, estimate.template workspace<typename Samples::Cell>()),
+        estimate(static_cast<std::size_t>(Executor::threads),
+                 DepthEstimator(camera, o.fluid, sampled(o.reference, step),
+                                {.window_px = o.smoothing_px, .step = step})),
         samples(o.reference),
-        depth(estimate.rows(), estimate.cols()),
-        status(estimate.rows(), estimate.cols()) {
+        depth(o.reference.rows / step, o.reference.cols / step),
+        status(depth.rows, depth.cols) {
     expects(rows == o.reference.rows, "FingertipOptions", "rows", static_cast<long long>(rows),
             "those of the reference");
     expects(cols == o.reference.cols, "FingertipOptions", "cols", static_cast<long long>(cols),
             "those of the reference");
-  }
-
-  static typename Methods::Smoothing smoothing(const Options& o) {
-    if constexpr (std::is_empty_v<typename Methods::Smoothing>) {
-      return {};
-    } else if constexpr (step == 1) {
-      return {o.smoothing_px};
-    } else {
-      return {o.smoothing_px, step};
-    }
   }
 
   template <class Frame>
@@ -80,8 +64,8 @@ struct FingertipImage {
     const auto& sampled_frame = samples(frame, executor);
     executor.bands(depth.rows, [&](int thread, Index first, Index last) {
       const auto k = static_cast<std::size_t>(thread);
-      parts[k] = estimate.band(first, last, sampled_frame.red, sampled_frame.green, depth.view(),
-                               status.view(), work[k]);
+      parts[k] = estimate[k].band(first, last, sampled_frame.red, sampled_frame.green, depth.view(),
+                                  status.view());
     });
     result = parts[0];
     for (std::size_t k = 1; k < parts.size(); ++k) {

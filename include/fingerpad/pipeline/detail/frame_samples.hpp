@@ -3,7 +3,6 @@
 #pragma once
 // The samples of a fingertip's frame, and the interpolation of their results to all pixels.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,7 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/depth/detail/pad_area.hpp"
+#include "fingerpad/depth/detail/pad.hpp"
 #include "fingerpad/depth/sampling.hpp"
 
 namespace fingerpad {
@@ -124,8 +123,8 @@ class FrameSamples {
         green_(red_),
         depth_(reference.rows, reference.cols),
         status_(reference.rows, reference.cols),
-        touch_(reference.rows, reference.cols) {
-    work_.fill(Sampler::workspace(reference.cols));
+        touch_(reference.rows, reference.cols),
+        samplers_(static_cast<std::size_t>(Threads), Sampler(reference.cols)) {
     for (Index i = 0; i < red_.rows; ++i) {
       PadArea row{i, 0, 1, 0};
       for (Index j = 0; j < red_.cols; ++j) {
@@ -146,9 +145,9 @@ class FrameSamples {
       for (Index i = first; i < last; ++i) {
         const PadArea& to = rows_[static_cast<std::size_t>(i)];
         const PadArea from = {i * Step, to.col * Step, Step, to.cols * Step};
-        (void)Sampler::band(0, 1, crop(frame.red, from), crop(frame.green, from),
-                            crop(red_.view(), to), crop(green_.view(), to),
-                            work_[static_cast<std::size_t>(thread)]);
+        (void)samplers_[static_cast<std::size_t>(thread)].band(
+            0, 1, crop(frame.red, from), crop(frame.green, from), crop(red_.view(), to),
+            crop(green_.view(), to));
       }
     });
     return Channels<StridedView<Cell>, StridedView<Cell>>{red_.view(), green_.view()};
@@ -189,7 +188,7 @@ class FrameSamples {
   OwnedGrid<float> depth_;
   OwnedGrid<PixelStatus> status_;
   OwnedGrid<std::uint8_t> touch_;
-  std::array<typename Sampler::Workspace, static_cast<std::size_t>(Threads)> work_;
+  std::vector<Sampler> samplers_;  // one per thread
   bool has_depth_ = false;
   bool has_touch_ = false;
 };
