@@ -21,33 +21,48 @@ using test::Image;
 namespace {
 
 template <class Pixel>
+using mean_t = typename detail::WindowMeans<Pixel>::Mean;
+
+template <class Pixel>
 struct Means {
-  using Mean = detail::window_mean_t<Pixel>;
-  Image<Mean> red, green;
+  Image<mean_t<Pixel>> red, green, outer_red;
 };
 
-/// All means of a frame, from `first` on, with one window.
+/// Pixels between two levels count.
+struct Limits {
+  double dark, saturated;
+};
+
+/// All means of a frame, from `first` on, over a window and one that is 2 px wider.
 template <class Pixel>
 Means<Pixel> means_of(const Frame<Pixel>& frame,
                       const Image<std::uint8_t>& inside,
                       int window,
-                      const detail::window_limits_t<Pixel>& limits,
+                      const Limits& limits,
                       Index first = 0) {
-  using Mean = detail::window_mean_t<Pixel>;
+  using Mean = mean_t<Pixel>;
   const Index rows = frame.red.rows();
   const Index cols = frame.red.cols();
-  Means<Pixel> out{Image<Mean>(rows, cols), Image<Mean>(rows, cols)};
+  Means<Pixel> out{Image<Mean>(rows, cols), Image<Mean>(rows, cols), Image<Mean>(rows, cols)};
+  const auto counts = [&](Pixel x) {
+    return static_cast<double>(x) > limits.dark && static_cast<double>(x) < limits.saturated;
+  };
   const auto load = [&](Index row, Pixel* red, Pixel* green, std::uint8_t* valid) {
     for (Index j = 0; j < cols; ++j) {
       red[j] = frame.red(row, j);
       green[j] = frame.green(row, j);
-      valid[j] = inside(row, j);
+      valid[j] = inside(row, j) != 0 && counts(red[j]) && counts(green[j]);
     }
   };
-  detail::WindowMeans<Pixel, 1> sums(rows, cols, {window}, limits);
+  detail::WindowMeans<Pixel> sums(rows, cols, {window, window + 2});
+  const auto blocks = static_cast<std::size_t>((cols + 63) / 64 * 64);
+  std::vector<Mean> red(blocks), green(blocks), outer(blocks);
   sums.start(first, load);
   for (Index i = first; i < rows; ++i) {
-    sums.advance(load, {{&out.red(i, 0), &out.green(i, 0)}});
+    sums.advance(load, red.data(), green.data(), outer.data());
+    std::copy_n(red.data(), cols, &out.red(i, 0));
+    std::copy_n(green.data(), cols, &out.green(i, 0));
+    std::copy_n(outer.data(), cols, &out.outer_red(i, 0));
   }
   return out;
 }
@@ -57,8 +72,8 @@ Means<Pixel> means_of(const Frame<Pixel>& frame,
 TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
   const Frame<std::uint8_t> frame(260, 300, 255);
   const Image<std::uint8_t> all(260, 300, 1);
-  const auto means = means_of(frame, all, 255, {0, 256});
-  CHECK(means.red(130, 150) == 255.0f);
+  const auto means = means_of(frame, all, 253, {0, 256});
+  CHECK(means.outer_red(130, 150) == 255.0f);
   CHECK(means.green(130, 150) == 255.0f);
   CHECK(means.red(0, 0) == 255.0f);
 }
@@ -66,9 +81,9 @@ TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
 TEST_CASE("the largest window of the brightest 16-bit pixels", "[window]") {
   const Frame<std::uint16_t> frame(256, 270, 65535);
   const Image<std::uint8_t> all(256, 270, 1);
-  const auto means = means_of(frame, all, 255, {0, 65536});
+  const auto means = means_of(frame, all, 253, {0, 65536});
   // 65025 * 65535 fits into 32 bits and is rounded to float once, times a rounded reciprocal
-  CHECK(means.red(127, 140) == Approx(65535).epsilon(2e-7));
+  CHECK(means.outer_red(127, 140) == Approx(65535).epsilon(2e-7));
   CHECK(means.green(0, 269) == Approx(65535).epsilon(2e-7));
 }
 
@@ -88,46 +103,44 @@ TEMPLATE_TEST_CASE("whole numbers have exact sums, rounded as a box filter does"
     for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
       frame.red.cells[k] = static_cast<Pixel>(random.whole(0, top));
       frame.green.cells[k] = static_cast<Pixel>(random.whole(0, top));
-      // any nonzero byte marks a valid pixel
-      inside.cells[k] = random.uniform() < share ? std::uint8_t(0)
-                                                 : static_cast<std::uint8_t>(random.whole(1, 255));
+      inside.cells[k] = random.uniform() < share ? 0 : 1;
     }
     const double dark = static_cast<double>(test::whole(-1, top / 4)) + 0.5;
     const double saturated = static_cast<double>(test::whole(top / 2, top + 1));
     const int window = 3 + 2 * static_cast<int>(test::whole(0, 20));
     const Index first = test::whole(0, rows - 1);
     const auto means = means_of(frame, inside, window, {dark, saturated}, first);
-    const Index r = window / 2;
     for (Index i = first; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
-        std::uint32_t red = 0, green = 0, count = 0;
-        for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
-          for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
-            const auto good = [&](Pixel x) { return x > dark && x < saturated; };
-            if (inside(p, q) != 0 && good(frame.red(p, q)) && good(frame.green(p, q))) {
-              red += frame.red(p, q);
-              green += frame.green(p, q);
-              ++count;
+        for (const Index r : {Index(window / 2), Index(window / 2 + 1)}) {
+          std::uint32_t red = 0, green = 0, count = 0;
+          for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
+            for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
+              const auto good = [&](Pixel x) { return x > dark && x < saturated; };
+              if (inside(p, q) != 0 && good(frame.red(p, q)) && good(frame.green(p, q))) {
+                red += frame.red(p, q);
+                green += frame.green(p, q);
+                ++count;
+              }
             }
           }
+          const auto mean = [&](std::uint32_t sum) {
+            return count == 0 ? std::numeric_limits<float>::quiet_NaN()
+                              : float(sum) * (1.0f / float(count));
+          };
+          if (r == window / 2) {
+            RC_ASSERT(test::same_bits(means.red(i, j), mean(red)));
+            RC_ASSERT(test::same_bits(means.green(i, j), mean(green)));
+          } else {
+            RC_ASSERT(test::same_bits(means.outer_red(i, j), mean(red)));
+          }
         }
-        const auto mean = [&](std::uint32_t sum) {
-          return count == 0 ? std::numeric_limits<float>::quiet_NaN()
-                            : float(sum) * (1.0f / float(count));
-        };
-        RC_ASSERT(test::same_bits(means.red(i, j), mean(red)));
-        RC_ASSERT(test::same_bits(means.green(i, j), mean(green)));
       }
     }
   });
 }
 
-TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
-                   "[window]",
-                   float,
-                   double,
-                   long double,
-                   test::Digits50) {
+TEMPLATE_TEST_CASE("rounding does not pile up down a long image", "[window]", float, double) {
   // A bright band followed by 400 rows of 1e-3 of it: a remainder of the band would be visible.
   using S = TestType;
   const Index rows = 440;
@@ -140,7 +153,7 @@ TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
       frame.green(i, j) = S(100 * wave);
     }
   }
-  const auto means = means_of(frame, all, 5, {S(0), S(255)});
+  const auto means = means_of(frame, all, 5, {0, 255});
   double worst = 0;
   for (Index i = 50; i < rows - 2; ++i) {
     S sum(0);
@@ -158,15 +171,15 @@ TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
 }
 
 TEST_CASE("windows and images that cannot be are refused", "[window]") {
-  using Sums = detail::WindowMeans<std::uint8_t, 2>;
-  CHECK_NOTHROW(Sums(1, 1, {3, 255}, {0, 255}));
-  CHECK_THROWS_AS(Sums(0, 1, {3, 5}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(1, 0, {3, 5}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(9, 9, {5, 5}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(9, 9, {5, 3}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(9, 9, {1, 3}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(9, 9, {4, 7}, {0, 255}), parameter_error);
-  CHECK_THROWS_AS(Sums(9, 9, {3, 257}, {0, 255}), parameter_error);
+  using Sums = detail::WindowMeans<std::uint8_t>;
+  CHECK_NOTHROW(Sums(1, 1, {3, 255}));
+  CHECK_THROWS_AS(Sums(0, 1, {3, 5}), parameter_error);
+  CHECK_THROWS_AS(Sums(1, 0, {3, 5}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {5, 5}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {5, 3}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {1, 3}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {4, 7}), parameter_error);
+  CHECK_THROWS_AS(Sums(9, 9, {3, 257}), parameter_error);
 }
 
 TEST_CASE("interleaved rows come apart", "[window]") {
@@ -198,7 +211,7 @@ TEST_CASE("interleaved rows come apart", "[window]") {
 
 TEST_CASE("pixels strictly between two limits, at the ends of their range", "[window]") {
   const auto range = [](double dark, double saturated) {
-    const detail::ClosedRange<std::uint8_t> closed({dark, saturated});
+    const detail::ClosedRange<std::uint8_t> closed(dark, saturated);
     return std::pair(int(closed.low), int(closed.high));
   };
   const std::pair none(1, 0);

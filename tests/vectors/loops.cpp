@@ -8,15 +8,11 @@
 
 using namespace fingerpad;
 
-struct Frame {
-  void operator()(Index row, std::uint16_t* red, std::uint16_t* green, std::uint8_t* counts) const;
-};
-void means_of(detail::WindowMeans<std::uint16_t, 2>& means,
-              const Frame& frame,
-              float* red,
-              float* green) {
-  means.start(0, frame);
-  means.advance(frame, {{red, green}, {red, nullptr}});
+DepthResult depth_of(DepthEstimator<>& estimate,
+                     const StridedView<const std::uint8_t>& red,
+                     const StridedView<const std::uint8_t>& green,
+                     const StridedView<float>& depth_mm) {
+  return estimate(red, green, depth_mm);
 }
 
 bool curvature_of(CurvatureMap<>& map,

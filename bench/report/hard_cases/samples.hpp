@@ -28,10 +28,11 @@ inline Row long_image() {
                    frame.green(i, j) = S(100 * wave);
                  }
                }
-               const auto load = [&](fingerpad::Index row, S* red, S* green) {
+               const auto load = [&](fingerpad::Index row, S* red, S* green, std::uint8_t* counts) {
                  for (fingerpad::Index j = 0; j < cols; ++j) {
                    red[j] = frame.red(row, j);
                    green[j] = frame.green(row, j);
+                   counts[j] = 1;
                  }
                };
                const auto sum_of = [&]<class T>(fingerpad::Index row, T sum) {
@@ -40,15 +41,15 @@ inline Row long_image() {
                  }
                  return sum;
                };
-               fingerpad::detail::WindowMeans<S, 1> sums(rows, cols, {5}, {S(0), S(255)});
+               fingerpad::detail::WindowMeans<S> sums(rows, cols, {5, 7});
                sums.start(0, load);
-               std::vector<fingerpad::detail::window_mean_t<S>> red(9), green(9);
+               std::vector<S> red(64), green(64), outer(64);
                S running = S(0);
                for (fingerpad::Index i = 0; i < 5; ++i) {
                  running = sum_of(i, running);
                }
                for (fingerpad::Index i = 0; i + 2 < rows; ++i) {
-                 sums.advance(load, {{red.data(), green.data()}});
+                 sums.advance(load, red.data(), green.data(), outer.data());
                  if (i > 2) {
                    running = sum_of(i + 2, running) - sum_of(i - 3, S(0));
                  }

@@ -37,6 +37,23 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
+/// The integer pixels inside an open interval as a closed range; [1, 0] if there are none.
+template <std::unsigned_integral Pixel>
+struct ClosedRange {
+  Pixel low = 1;
+  Pixel high = 0;
+
+  ClosedRange(double dark, double saturated) {
+    const double top = double((std::numeric_limits<Pixel>::max)());
+    const double first = (std::max)(0.0, std::floor(dark) + 1);
+    const double last = (std::min)(top, std::ceil(saturated) - 1);
+    if (dark < saturated && first <= last) {  // not for NaN
+      low = static_cast<Pixel>(first);
+      high = static_cast<Pixel>(last);
+    }
+  }
+};
+
 /// Copies one row of each channel to plain memory.
 template <class Red, class Green, class Pixel>
 void load_pixels(const Red& red, const Green& green, Index row, Pixel* to_red, Pixel* to_green) {
@@ -150,12 +167,12 @@ class ColourRows {
       const double inner = size[0] * size[0] - 1,
                    outer = size[1] * size[1] - 1;  // 12 second moments
       weight_ = {S(outer / (outer - inner)), S(-inner / (outer - inner))};
-      constexpr S infinity = (std::numeric_limits<S>::infinity)();
-      real_means_.emplace(area.rows, cols_, size, ValueLimits<S>{-infinity, infinity});
+      real_means_.emplace(area.rows, cols_, size);
       if constexpr (std::same_as<S, float>) {
-        exact_means_.emplace(area.rows, cols_, size, ValueLimits<double>{-infinity, infinity});
+        exact_means_.emplace(area.rows, cols_, size);
       }
-      means_.fill(Pair<S>(cols_));
+      inner_ = Pair<S>(cols_);
+      outer_red_ = inner_.red;
     }
   }
 
@@ -178,9 +195,8 @@ class ColourRows {
   void next(const Red& red, const Green& green, const GreyScale& scale, S* to_red, S* to_green) {
     using Pixel = pixel_t<cell_t<Red>>;
     if (real_means_) {
-      means<Pixel>().advance(source(red, green, scale),
-                             {{means_[0].red.data(), means_[0].green.data()},
-                              {means_[1].red.data(), means_[1].green.data()}});
+      means<Pixel>().advance(source(red, green, scale), inner_.red.data(), inner_.green.data(),
+                             outer_red_.data());
       finish<Pixel>(row_++, to_red, to_green);
       return;
     }
@@ -259,7 +275,7 @@ class ColourRows {
     const S level = S(1 / scale.units_per_level);
     const S kappa = kappa_ * level;
     if constexpr (std::integral<Pixel>) {
-      const ClosedRange<Pixel> range({scale.dark, scale.saturated});
+      const ClosedRange<Pixel> range(scale.dark, scale.saturated);
       for (Index j = 0; j < cols_; j += block) {
         mark(range, red + j, green + j, used + j, counts + j);
       }
@@ -308,9 +324,9 @@ class ColourRows {
     const S* scattered = scattered_.data() + row * cols_;
     const S per_kappa = S(1) / kappa_;
     for_each_cell<S>(cols_, [&]<class V>(Index j) {
-      V residual = weight_[0] * load_cells<V, S>(means_[0].red.data() + j) +
-                   weight_[1] * load_cells<V, S>(means_[1].red.data() + j);
-      V green = load_cells<V, S>(means_[0].green.data() + j);
+      V residual = weight_[0] * load_cells<V, S>(inner_.red.data() + j) +
+                   weight_[1] * load_cells<V, S>(outer_red_.data() + j);
+      V green = load_cells<V, S>(inner_.green.data() + j);
       if constexpr (std::integral<Pixel>) {
         green = green * (S(1) / S(green_units));
         residual = (residual - S(residual_zero)) * (S(1) / S(residual_units));
@@ -331,10 +347,11 @@ class ColourRows {
   std::vector<S> gain_;  // a plane, or one row of 1
   std::vector<std::uint8_t> used_;
   std::tuple<Pair<std::uint8_t>, Pair<std::uint16_t>, Pair<S>> pixels_;
-  std::optional<WindowMeans<S, 2>> real_means_;  // empty: no window
-  std::optional<WindowMeans<std::uint16_t, 2>> exact_means_;
+  std::optional<WindowMeans<S>> real_means_;  // empty: no window
+  std::optional<WindowMeans<std::uint16_t>> exact_means_;
   std::array<S, 2> weight_ = {};
-  std::array<Pair<S>, 2> means_;
+  Pair<S> inner_;  // means over the windows
+  std::vector<S> outer_red_;
   Index row_ = 0;
 };
 

@@ -1,31 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Means of two channels over square windows, row by row from top to bottom. A window holds the
-// valid pixels among the w x w (odd, 3..255) around a pixel: those in the image, inside the
-// caller's mask, with both channels between the limits. Without a valid pixel the mean is NaN.
+// Means of two channels over two concentric square windows, row by row from top to bottom. A window
+// holds the pixels that count among the w x w (odd, 3..255) around a pixel; where none counts, the
+// mean is NaN. Green is averaged over the inner window only.
 //
-// 8- and 16-bit sums are exact; complete windows give the bits of a float box filter. A band of
-// rows gives the same bits as the whole image. Each object is the workspace of one thread and
-// allocates only at construction.
+// Sums of 8- and 16-bit pixels are exact: complete windows give the bits of a float box filter.
+// Other sums are in double and start anew at every 32nd row, so that a band of rows has the same
+// bits as the whole image; for this they may begin up to 31 rows before the band. Each object is
+// the memory of one thread and allocates only at construction.
 //
-//   WindowMeans<std::uint8_t, 2> means(rows, cols, {33, 55}, {0, 255});
-//   means.start(first, load_row);  // load_row(row, red, green) or (row, red, green, inside)
+//   WindowMeans<std::uint16_t> means(rows, cols, {33, 55});
+//   means.start(first, load_row);
 //   for (Index row = first; row < last; ++row) {
-//     means.advance(load_row, {{r33, g33}, {r55, nullptr}});
+//     means.advance(load_row, inner_red, inner_green, outer_red);
 //   }
 //
-// Green is averaged over the first window only. load_row is called for rows in order, once each,
-// from half a window before `first` on. Rounded sums restart every 32 rows and may begin up to 31
-// rows earlier. Loops over pixels are blocks of a length known to the compiler, which GCC 12
+// load_row(row, red, green, counts) fills a row of the image; counts[j] is 1 where the pixel
+// counts, else 0. It is called for rows in order, once each, from half an outer window before
+// `first` on. Loops over pixels are blocks of a length known to the compiler, which GCC 12
 // vectorises at -O2 unless it inlines them: then it forgets __restrict (tests/vectors).
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -37,130 +36,65 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// A pixel counts if dark < red < saturated and dark < green < saturated; NaN never counts.
-template <class S>
-struct ValueLimits {
-  S dark;
-  S saturated;
-};
-
-/// Limits are given as double for integer pixels (5.5 and infinity are fine), else in the pixel
-/// type.
+/// For pixels of 8 or 16 bits, float or double.
 template <class Pixel>
-using window_limits_t = ValueLimits<real_of_t<Pixel>>;
-
-/// The type of a mean: float for integer pixels, whose sums are exact, else the pixel type.
-template <class Pixel>
-using window_mean_t = std::conditional_t<std::integral<Pixel>, float, Pixel>;
-
-/// Output of one row of means, `cols` elements each; green for the first window only.
-template <class Mean>
-struct MeanRows {
-  Mean* red;
-  Mean* green;
-};
-
-/// The integer pixels inside an open interval as a closed range; [1, 0] if there are none.
-template <std::unsigned_integral Pixel>
-struct ClosedRange {
-  Pixel low;
-  Pixel high;
-
-  constexpr ClosedRange(const ValueLimits<double>& open) : low(1), high(0) {
-    constexpr double top = double((std::numeric_limits<Pixel>::max)());
-    const double first = open.dark < 0 ? 0 : std::floor(open.dark) + 1;
-    const double last = open.saturated > top ? top : std::ceil(open.saturated) - 1;
-    if (!(first <= last)) {  // also for NaN
-      return;
-    }
-    low = static_cast<Pixel>(first);
-    high = static_cast<Pixel>(last);
-  }
-};
-
-/// Half widths of the windows; refuses sizes that are even, out of range or not increasing.
-template <int Windows>
-std::array<Index, std::size_t(Windows)> window_radii(
-    const std::array<int, std::size_t(Windows)>& sizes_px) {
-  static_assert(Windows >= 1);
-  std::array<Index, std::size_t(Windows)> radii{};
-  int before = 1;
-  for (std::size_t k = 0; k < sizes_px.size(); ++k) {
-    const int size = sizes_px[k];
-    expects(size % 2 == 1 && size > before && size <= 255, "WindowMeans", "window_px", size,
-            "odd, 3..255, and larger than the window before it");
-    before = size;
-    radii[k] = size / 2;
-  }
-  return radii;
-}
-
-/// A caller's row source: load(row, red, green), or load(row, red, green, inside), which also fills
-/// one byte per pixel, nonzero where the pixel may count. Only rows inside the image are requested.
-template <class Load, class Pixel>
-concept masked_row_source = std::invocable<Load&, Index, Pixel*, Pixel*, std::uint8_t*>;
-template <class Load, class Pixel>
-concept row_source = masked_row_source<Load, Pixel> || std::invocable<Load&, Index, Pixel*, Pixel*>;
-
-template <class Pixel, int Windows = 1>
 class WindowMeans {
  public:
-  using Mean = window_mean_t<Pixel>;
+  using Mean = std::conditional_t<std::integral<Pixel>, float, Pixel>;
 
-  WindowMeans(Index rows,
-              Index cols,
-              const std::array<int, std::size_t(Windows)>& window_px,
-              const window_limits_t<Pixel>& limits)
-      : rows_(rows),
-        cols_(cols),
-        padded_((cols + block - 1) / block * block),
-        radius_(window_radii<Windows>(window_px)),
-        limits_(limits) {
+  /// Refuses an empty image, and sizes that are even, out of range or not increasing.
+  WindowMeans(Index rows, Index cols, const std::array<int, 2>& windows_px)
+      : rows_(rows), cols_(cols), padded_((cols + block - 1) / block * block) {
     expects(rows >= 1, "WindowMeans", "rows", rows, ">= 1");
     expects(cols >= 1, "WindowMeans", "cols", cols, ">= 1");
-    ring_.assign(std::size_t(2 * radius_.back() + 2), Row(padded_));
+    int before = 1;
+    for (const int size : windows_px) {
+      expects(size % 2 == 1 && size > before && size <= 255, "WindowMeans", "window_px", size,
+              "odd, 3..255, and larger than the window before it");
+      before = size;
+    }
+    reach_ = windows_px[1] / 2;
+    windows_[0].radius = windows_px[0] / 2;
+    windows_[1].radius = reach_;
+    for (Window& window : windows_) {
+      window.sums = Sums(padded_);
+    }
+    ring_.assign(std::size_t(2 * reach_ + 2), Row(padded_));
     none_ = Row(padded_);
-    along_ = Sums(padded_ + 2 * radius_.back() + 1);
-    sums_.fill(Sums(padded_));
+    along_ = Sums(padded_ + 2 * reach_ + 1);
   }
 
-  /// Prepares for row `first_row`. Rounded sums depend on the row where they start, so they start
-  /// at fixed rows.
-  template <row_source<Pixel> Load>
-  void start(Index first_row, Load&& load_row) {
-    next_row_ = std::integral<Pixel> ? first_row : first_row - first_row % restart_rows;
-    for (Index row = next_row_ - radius_.back(); row < next_row_ + radius_.back(); ++row) {
+  /// Prepares for row `first`.
+  template <class Load>
+  void start(Index first, const Load& load_row) {
+    next_row_ = std::integral<Pixel> ? first : first - first % restart_rows;
+    for (Index row = next_row_ - reach_; row < next_row_ + reach_; ++row) {
       take_in(row, load_row);
     }
-    restarts_ = true;
-    while (next_row_ < first_row) {
+    starts_ = true;
+    while (next_row_ < first) {
       slide(load_row);
     }
   }
 
-  Index next_row() const { return next_row_; }
-
-  /// Writes the means of row next_row() and advances next_row() by one.
-  template <row_source<Pixel> Load>
-  void advance(Load&& load_row, const MeanRows<Mean> (&out)[std::size_t(Windows)]) {
+  /// Writes the means of the next row: `cols` numbers each, in memory for as many whole blocks
+  /// of 64.
+  template <class Load>
+  void advance(const Load& load_row, Mean* inner_red, Mean* inner_green, Mean* outer_red) {
     slide(load_row);
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const Index r = radius_[k];
-      sum_along(sums_[k].count, r, along_.count);
-      average(sums_[k].red, r, along_.red, out[k].red);
-      if (k == 0) {
-        average(sums_[k].green, r, along_.green, out[k].green);
-      }
-    }
+    const auto& [inner, outer] = windows_;
+    sum_along(inner.sums.count, inner.radius, along_.count);
+    average(inner.sums.red, inner.radius, along_.red, inner_red);
+    average(inner.sums.green, inner.radius, along_.green, inner_green);
+    sum_along(outer.sums.count, outer.radius, along_.count);
+    average(outer.sums.red, outer.radius, along_.red, outer_red);
   }
 
  private:
   static constexpr Index block = 64;
   static constexpr Index restart_rows = 32;
-  // Integers wrap, so that differences of running sums are exact; floats are summed in double.
-  using Sum = std::conditional_t<std::integral<Pixel>,
-                                 std::uint32_t,
-                                 std::conditional_t<std::same_as<Pixel, float>, double, Pixel>>;
+  // Integers wrap, so that differences of running sums are exact.
+  using Sum = std::conditional_t<std::integral<Pixel>, std::uint32_t, double>;
 
   template <class Value, class Count>
   struct Planes {
@@ -169,101 +103,72 @@ class WindowMeans {
 
     explicit Planes(Index size = 0)
         : red(std::size_t(size), Value(0)), green(red), count(red.size(), Count(0)) {}
-    void clear() {
-      std::fill(red.begin(), red.end(), Value(0));
-      std::fill(green.begin(), green.end(), Value(0));
-      std::fill(count.begin(), count.end(), Count(0));
-    }
   };
   using Row = Planes<Pixel, std::uint8_t>;
   using Sums = Planes<Sum, std::uint32_t>;
+
+  struct Window {
+    Index radius = 0;
+    Sums sums;  ///< over the rows of the window, column by column
+  };
 
   bool in_image(Index row) const { return row >= 0 && row < rows_; }
   Row& slot(Index row) { return ring_[std::size_t(row) % ring_.size()]; }
   const Row& row_or_none(Index row) { return in_image(row) ? slot(row) : none_; }
 
-  /// Reads a row and sets its invalid pixels to 0 in both channels.
+  /// Reads a row. Pixels that do not count become 0.
   template <class Load>
-  void take_in(Index row, Load& load_row) {
-    if (!in_image(row)) {
-      return;
-    }
-    Row& to = slot(row);
-    if constexpr (masked_row_source<Load, Pixel>) {
+  void take_in(Index row, const Load& load_row) {
+    if (in_image(row)) {
+      Row& to = slot(row);
       load_row(row, to.red.data(), to.green.data(), to.count.data());
-    } else {
-      load_row(row, to.red.data(), to.green.data());
-      std::fill(to.count.begin(), to.count.end(), std::uint8_t(1));
-    }
-    std::fill(to.count.begin() + cols_, to.count.end(), std::uint8_t(0));
-    for (Index j = 0; j < padded_; j += block) {
-      clean(limits_, to.red.data() + j, to.green.data() + j, to.count.data() + j);
-    }
-  }
-
-  [[gnu::noinline]] static void clean(const window_limits_t<Pixel>& limits,
-                                      Pixel* __restrict red,
-                                      Pixel* __restrict green,
-                                      std::uint8_t* __restrict valid) {
-    if constexpr (std::integral<Pixel>) {
-      const ClosedRange<Pixel> range(limits);
-      const Pixel low = range.low, high = range.high;
-      Pixel keep[block];  // all bits of a valid pixel
-      for (Index i = 0; i < block; ++i) {
-        const bool in_range =
-            (red[i] >= low) & (red[i] <= high) & (green[i] >= low) & (green[i] <= high);
-        keep[i] = Pixel(-int(in_range & (valid[i] != 0)));
-      }
-      for (Index i = 0; i < block; ++i) {
-        red[i] = Pixel(red[i] & keep[i]);
-      }
-      for (Index i = 0; i < block; ++i) {
-        green[i] = Pixel(green[i] & keep[i]);
-      }
-      for (Index i = 0; i < block; ++i) {
-        valid[i] = std::uint8_t(keep[i] & 1);
-      }
-    } else {
-      const auto counts = [&](const Pixel& x) { return limits.dark < x && x < limits.saturated; };
-      for (Index i = 0; i < block; ++i) {
-        valid[i] = valid[i] != 0 && counts(red[i]) && counts(green[i]);
-        if (valid[i] == 0) {
-          red[i] = green[i] = Pixel(0);
-        }
+      std::fill(to.count.begin() + cols_, to.count.end(), std::uint8_t(0));
+      for (Index j = 0; j < padded_; j += block) {
+        clean(to.red.data() + j, to.count.data() + j);
+        clean(to.green.data() + j, to.count.data() + j);
       }
     }
   }
 
-  /// Moves the sums over the columns of all windows down by one row.
+  [[gnu::noinline]] static void clean(Pixel* __restrict cells,
+                                      const std::uint8_t* __restrict counts) {
+    for (Index i = 0; i < block; ++i) {
+      if constexpr (std::integral<Pixel>) {
+        cells[i] = Pixel(cells[i] & -int(counts[i]));
+      } else {
+        cells[i] = counts[i] != 0 ? cells[i] : Pixel(0);
+      }
+    }
+  }
+
+  /// Moves both windows down by one row.
   template <class Load>
-  void slide(Load& load_row) {
+  void slide(const Load& load_row) {
     const Index row = next_row_++;
-    take_in(row + radius_.back(), load_row);
-    const bool anew = restarts_ || (!std::integral<Pixel> && row % restart_rows == 0);
-    restarts_ = false;
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const Index r = radius_[k];
+    take_in(row + reach_, load_row);
+    const bool anew = starts_ || (!std::integral<Pixel> && row % restart_rows == 0);
+    starts_ = false;
+    for (Window& window : windows_) {
+      const Index r = window.radius;
       if (anew) {
-        sums_[k].clear();
+        std::fill(window.sums.red.begin(), window.sums.red.end(), Sum(0));
+        std::fill(window.sums.green.begin(), window.sums.green.end(), Sum(0));
+        std::fill(window.sums.count.begin(), window.sums.count.end(), 0U);
       }
       for (Index i = anew ? row - r : row + r; i <= row + r; ++i) {
         const Row& in = row_or_none(i);
         const Row& out = anew ? none_ : row_or_none(row - r - 1);
-        move(in.red, out.red, sums_[k].red);
-        if (k == 0) {
-          move(in.green, out.green, sums_[k].green);
+        for (std::size_t j = 0; j < std::size_t(padded_); j += std::size_t(block)) {
+          move(in.red.data() + j, out.red.data() + j, window.sums.red.data() + j);
+          if (&window == &windows_[0]) {
+            move(in.green.data() + j, out.green.data() + j, window.sums.green.data() + j);
+          }
+          move(in.count.data() + j, out.count.data() + j, window.sums.count.data() + j);
         }
-        move(in.count, out.count, sums_[k].count);
       }
     }
   }
 
-  template <class T, class N>
-  static void move(const std::vector<T>& in, const std::vector<T>& out, std::vector<N>& sum) {
-    for (std::size_t j = 0; j < sum.size(); j += std::size_t(block)) {
-      move(in.data() + j, out.data() + j, sum.data() + j);
-    }
-  }
   template <class T, class N>
   [[gnu::noinline]] static void move(const T* __restrict in,
                                      const T* __restrict out,
@@ -290,18 +195,11 @@ class WindowMeans {
     for (Index j = 0; j < cols_; j += block) {
       const Sum* sum = along.data() + j;
       const std::uint32_t* count = along_.count.data() + j;
-      if (j + block <= cols_) {
-        divide(sum, sum + width, count, count + width, to + j);
-      } else {
-        Mean last[block];
-        divide(sum, sum + width, count, count + width, last);
-        std::copy_n(last, cols_ - j, to + j);
-      }
+      divide(sum, sum + width, count, count + width, to + j);
     }
   }
 
-  /// The mean of integers multiplies by the reciprocal, as box filters do, so that complete windows
-  /// give the same bits.
+  /// Multiplies sums of integers by the reciprocal, as box filters do. 0 / 0 is NaN.
   [[gnu::noinline]] static void divide(const Sum* sum_before,
                                        const Sum* sum_after,
                                        const std::uint32_t* before,
@@ -310,7 +208,7 @@ class WindowMeans {
     for (Index i = 0; i < block; ++i) {
       const int count = int(after[i] - before[i]);
       if constexpr (std::integral<Pixel>) {
-        to[i] = float(sum_after[i] - sum_before[i]) * (1.0f / float(count));  // 0 / 0 is NaN
+        to[i] = float(sum_after[i] - sum_before[i]) * (1.0f / float(count));
       } else {
         to[i] =
             count == 0 ? not_a_number<Mean>() : Mean((sum_after[i] - sum_before[i]) / Sum(count));
@@ -319,14 +217,13 @@ class WindowMeans {
   }
 
   Index rows_, cols_, padded_;
-  std::array<Index, std::size_t(Windows)> radius_;
-  window_limits_t<Pixel> limits_;
+  Index reach_ = 0;  // of the outer window
   Index next_row_ = 0;
-  bool restarts_ = true;
+  bool starts_ = true;
   std::vector<Row> ring_;
   Row none_;    // a row outside the image
   Sums along_;  // running sums along the row
-  std::array<Sums, std::size_t(Windows)> sums_;
+  std::array<Window, 2> windows_;
 };
 
 }  // namespace detail
