@@ -104,7 +104,7 @@ def declaration_of(name, root):
 def test_named(cell, root):
     """A test that guards a printed form, as it is written: how it is called."""
     file, title = re.search(r'\]\(\.\./(tests/[^)]*)\) "([^"]*)"', cell).groups()
-    return re.search(rf'^\w*TEST_CASE\(\s*"{re.escape(title)}".*?^}}\n', (root / file).read_text(),
+    return re.search(rf'^TEST_CASE\(\s*"{re.escape(title)}".*?^}}\n', (root / file).read_text(),
                      re.MULTILINE | re.DOTALL)[0]
 
 

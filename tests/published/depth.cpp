@@ -132,53 +132,56 @@ Colour<double> plain_mean(const Frame<Pixel>& frame,
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("published depth: mean, quotient and bisection of each pixel",
-                   "[published]",
-                   std::uint8_t,
-                   std::uint16_t) {
-  using Pixel = TestType;
-  const Pad pad;
-  auto o = pad.published(GENERATE(1, 3, 29, 101));
-  o.units_per_level = grey_scale_of<Pixel>().units_per_level;
-  o.halvings = GENERATE(2, 16);
-  const auto free = pad.free_depths();
-  auto free_frame = pad.frame<Pixel>(free, 1, 3);
-  auto frame = pad.frame<Pixel>(pad.pressed_depths(3), 1, 4);
-  for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
-    if (!(free.cells[k] >= 0)) {  // light beside the pad
-      free_frame.red.cells[k] = frame.red.cells[k] = test::stored<Pixel>(99);
-      free_frame.green.cells[k] = frame.green.cells[k] = test::stored<Pixel>(20);
-    }
-  }
-  for (std::size_t k = 0; k < frame.red.cells.size(); k += 7) {
-    free_frame.red.cells[k] = test::stored<Pixel>(k % 2 == 0 ? 0 : 255);
-    frame.green.cells[k] = test::stored<Pixel>(k % 3 == 0 ? 0 : 255);
-  }
-  published::DepthEstimator<> estimate(o, free_frame.red, free_frame.green, free);
-  Image<double> depth(pad.rows, pad.cols);
-  REQUIRE(estimate(frame.red, frame.green, depth));
-  Index numbers = 0;
-  for (Index i = 0; i < pad.rows; ++i) {
-    for (Index j = 0; j < pad.cols; ++j) {
-      double expected = test::nan;
-      if (free(i, j) > 0) {
-        const auto ray =
-            published::ray_of(o.camera, static_cast<double>(i), static_cast<double>(j));
-        const auto at_rest = plain_mean(free_frame, free, o, i, j);
-        const auto now = plain_mean(frame, free, o, i, j);
-        const double g =
-            published::quotient(o.fluid, ray.k, ray.h2_mm, at_rest.red, at_rest.green, free(i, j));
-        if (is_finite(g) && is_finite(now.red)) {
-          expected = published::bisect(o.fluid, ray.k, ray.h2_mm, g, now.red, now.green,
-                                       o.max_depth_mm, o.halvings);
-          ++numbers;
-        }
+TEST_CASE("published depth: mean, quotient and bisection of each pixel", "[published]") {
+  const int window_px = GENERATE(1, 3, 29, 101);
+  const int halvings = GENERATE(2, 16);
+  const auto check = [&](auto cell) {
+    using Pixel = decltype(cell);
+    const Pad pad;
+    auto o = pad.published(window_px);
+    o.units_per_level = grey_scale_of<Pixel>().units_per_level;
+    o.halvings = halvings;
+    const auto free = pad.free_depths();
+    auto free_frame = pad.frame<Pixel>(free, 1, 3);
+    auto frame = pad.frame<Pixel>(pad.pressed_depths(3), 1, 4);
+    for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+      if (!(free.cells[k] >= 0)) {  // light beside the pad
+        free_frame.red.cells[k] = frame.red.cells[k] = test::stored<Pixel>(99);
+        free_frame.green.cells[k] = frame.green.cells[k] = test::stored<Pixel>(20);
       }
-      CAPTURE(i, j, depth(i, j), expected);
-      REQUIRE(test::same_bits(depth(i, j), expected));
     }
-  }
-  CHECK(numbers > 1000);
+    for (std::size_t k = 0; k < frame.red.cells.size(); k += 7) {
+      free_frame.red.cells[k] = test::stored<Pixel>(k % 2 == 0 ? 0 : 255);
+      frame.green.cells[k] = test::stored<Pixel>(k % 3 == 0 ? 0 : 255);
+    }
+    published::DepthEstimator<> estimate(o, free_frame.red, free_frame.green, free);
+    Image<double> depth(pad.rows, pad.cols);
+    REQUIRE(estimate(frame.red, frame.green, depth));
+    Index numbers = 0;
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        double expected = test::nan;
+        if (free(i, j) > 0) {
+          const auto ray =
+              published::ray_of(o.camera, static_cast<double>(i), static_cast<double>(j));
+          const auto at_rest = plain_mean(free_frame, free, o, i, j);
+          const auto now = plain_mean(frame, free, o, i, j);
+          const double g = published::quotient(o.fluid, ray.k, ray.h2_mm, at_rest.red,
+                                               at_rest.green, free(i, j));
+          if (is_finite(g) && is_finite(now.red)) {
+            expected = published::bisect(o.fluid, ray.k, ray.h2_mm, g, now.red, now.green,
+                                         o.max_depth_mm, o.halvings);
+            ++numbers;
+          }
+        }
+        CAPTURE(i, j, depth(i, j), expected);
+        REQUIRE(test::same_bits(depth(i, j), expected));
+      }
+    }
+    CHECK(numbers > 1000);
+  };
+  check(std::uint8_t());
+  check(std::uint16_t());
 }
 
 TEST_CASE("published depth: what is refused", "[published]") {

@@ -4,6 +4,7 @@
 // Frames for the whole chain with the truth of every result. A membrane in equilibrium is pressed
 // flat by a plate that drags its dots back and forth and rotates them without slip. Colours are
 // 8-bit with one grey level of noise; side dots pull as the plate pushes.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -98,9 +99,9 @@ class PressedFrames {
                                                        std::move(reference), pad_.rows, pad_.cols};
     f.free_dots_mm = free_dots_.view();
     f.rim_mm = rim_.view();
-    // windows and rings of the default width on the pad, which is set for 640 x 480
+    // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px at most
     const double scale = static_cast<double>(pad_.cols) / 640;
-    f.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
+    f.smoothing_px = (std::min)(2 * static_cast<int>(14 * scale) + 1, 109);
     f.contact.ring.radius_px = 25 * scale;
     // by area: the plate's pressure on it; by depth: a line between two of the frames
     using NormalLookUp = typename decltype(f)::NormalLookUp;
