@@ -80,13 +80,13 @@ class DepthEffects {
     place_.cost_us = cost_us(work(estimator_), work(*straight_estimator_));
     smoothing_.cost_us = cost_us(work(estimator_), work(*raw_));
     const auto samples = [](const Image<float>& from) {  // as a fingertip has them
-      Image<float> out(from.rows() / 3, from.cols() / 3);
-      for (Index i = 0; i < out.rows(); ++i) {
-        for (Index j = 0; j < out.cols(); ++j) {
-          out(i, j) = from(3 * i, 3 * j);
+      Image<float> to(from.rows() / 3, from.cols() / 3);
+      for (Index i = 0; i < to.rows(); ++i) {
+        for (Index j = 0; j < to.cols(); ++j) {
+          to(i, j) = from(3 * i, 3 * j);
         }
       }
-      return out;
+      return to;
     };
     auto depth = samples(measured(estimator_, frame));
     fingerpad::NeighbourLightCompensation<> light(
