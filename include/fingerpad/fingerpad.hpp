@@ -59,7 +59,6 @@
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"

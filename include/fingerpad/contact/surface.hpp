@@ -14,16 +14,16 @@
 // give: g = (k1^3 + k2^3) / (k1^2 + k2^2) / 2 makes spheres and cylinders exact, and is 0 for a
 // saddle that bends both ways alike. It also keeps |grad| close to 1, so that least squares
 // minimise the distance.
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -66,82 +66,117 @@ struct [[nodiscard]] SurfaceResult {
 
 namespace detail {
 
+/// The sums of all products of N terms.
+template <std::size_t N>
+struct ProductSums {
+  SmallMatrix<double, N> sum = zero_matrix<double, N>();
+
+  void add(const std::array<double, N>& term) {
+    for (std::size_t a = 0; a < N; ++a) {
+      for (std::size_t b = a; b < N; ++b) {
+        sum[a][b] += term[a] * term[b];
+      }
+    }
+  }
+  double operator()(std::size_t a, std::size_t b) const { return a < b ? sum[a][b] : sum[b][a]; }
+};
+
 /// The place of a patch: its centroid and the axes u, v, w of its best plane, w toward the object.
 struct PatchFrame {
   Index pixels = 0;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  Point3<double> center = {0, 0, 0};
+  std::array<Point3<double>, 3> axes = {};
   bool is_line = true;  ///< of pixels: thinner than a thousandth of its length
 
   /// `for_each_point` visits the points of a patch and the pixels that see them.
   template <class Points>
   explicit PatchFrame(const Points& for_each_point) {
-    using Vector5 = Eigen::Matrix<double, 5, 1>;
-    Vector5 first = Vector5::Zero(), mean = Vector5::Zero();  // x, y, z, row, col
-    Eigen::Matrix<double, 5, 5> second = Eigen::Matrix<double, 5, 5>::Zero();
-    for_each_point([&](const Eigen::Vector3d& p, double row, double col) {
-      Vector5 all;
-      all << p, row, col;
+    std::array<double, 6> first = {};
+    ProductSums<6> sums;  // of 1, x, y, z, row, col; the others relative to the first point
+    for_each_point([&](const Point3<double>& p, double row, double col) {
+      const std::array<double, 6> all = {0, p.x, p.y, p.z, row, col};
       first = pixels++ == 0 ? all : first;  // digits are kept relative to it
-      all -= first;
-      mean += all;
-      second += all * all.transpose();
+      sums.add({1, p.x - first[1], p.y - first[2], p.z - first[3], row - first[4], col - first[5]});
     });
     const double n = static_cast<double>(pixels);
-    mean /= n;
-    second = second / n - mean * mean.transpose();
-    const Eigen::Matrix2d of_pixels = second.bottomRightCorner<2, 2>();
-    is_line = !(of_pixels.determinant() > 1e-6 * of_pixels.trace() * of_pixels.trace());
-    center = (first + mean).head<3>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(second.topLeftCorner<3, 3>());
-    const Eigen::Vector3d w = spread.eigenvectors().col(0), u = w.unitOrthogonal();
-    axes << u, w.cross(u), w;
-    if (w.z() < 0) {
-      axes.rightCols<2>() *= -1;
+    const auto mean = [&](std::size_t a) { return sums(0, a) / n; };
+    const auto second = [&](std::size_t a, std::size_t b) {
+      return sums(a, b) / n - mean(a) * mean(b);
+    };
+    const double determinant = second(4, 4) * second(5, 5) - square(second(4, 5));
+    is_line = !(determinant > 1e-6 * square(second(4, 4) + second(5, 5)));
+    center = {first[1] + mean(1), first[2] + mean(2), first[3] + mean(3)};
+    SmallMatrix<double, 3> spread;
+    for (std::size_t a = 0; a < 3; ++a) {
+      spread[a] = {second(a + 1, 1), second(a + 1, 2), second(a + 1, 3)};
     }
+    const auto [u, v, w] = eigenvectors(spread).vector;
+    const Point3<double> up = w.z < 0 ? -w : w;
+    axes = {u, cross(up, u), up};
+  }
+
+  Point3<double> inside(const Point3<double>& p) const {
+    const Point3<double> q = p - center;
+    return {dot(axes[0], q), dot(axes[1], q), dot(axes[2], q)};
+  }
+  Point3<double> outside(const Point3<double>& direction) const {
+    return direction.x * axes[0] + direction.y * axes[1] + direction.z * axes[2];
   }
 };
 
 /// The quadric of a patch in its own frame, by least squares: its coefficients c and g.
 struct QuadricFit {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Terms = std::array<double, 6>;
 
   template <class Points>
-  QuadricFit(const Points& for_each_point, const PatchFrame& frame) {
-    Eigen::Matrix<double, 8, 8> sums = Eigen::Matrix<double, 8, 8>::Zero();
-    for_each_point([&](const Eigen::Vector3d& p, double, double) {
-      const Eigen::Vector3d q = frame.axes.transpose() * (p - frame.center);
-      const double u = q.x(), v = q.y(), w = q.z();
-      Eigen::Matrix<double, 8, 1> terms;
-      terms << 1, u, v, u * u, u * v, v * v, w, w * w;
-      sums.selfadjointView<Eigen::Lower>().rankUpdate(terms);
-    });
-    sums = sums.selfadjointView<Eigen::Lower>();
-    scale = sums.diagonal().head<6>().cwiseSqrt().cwiseInverse();
-    solver.compute(scale.asDiagonal() * sums.topLeftCorner<6, 6>() * scale.asDiagonal());
-    const Vector6 of_w = sums.col(6).head<6>(), of_w_sq = sums.col(7).head<6>();
-    const Vector6 a = solve(of_w), b = solve(of_w_sq);
+  QuadricFit(const Points& for_each_point, const PatchFrame& frame)
+      : sums(sums_of(for_each_point, frame)), equations(normal(sums), 1e-9) {
+    const Terms of_w = column(6), of_w_sq = column(7);
+    const Terms a = equations.solve(of_w), b = equations.solve(of_w_sq);
     c = a;
     for (int round = 0; round < 60; ++round) {  // each shrinks the error of g by the squared angle
       const double sum = 2 * (c[3] + c[5]), product = 4 * c[3] * c[5] - c[4] * c[4];
       const double squares = sum * sum - 2 * product;  // k1^2 + k2^2
       g = squares > 0 ? sum * (squares - product) / squares / 2 : 0;
-      c = a - g * b;
+      for (std::size_t k = 0; k < c.size(); ++k) {
+        c[k] = a[k] - g * b[k];
+      }
     }
-    sum_sq = sums(6, 6) - 2 * g * sums(7, 6) + g * g * sums(7, 7) - c.dot(of_w - g * of_w_sq);
+    sum_sq = sums(6, 6) - 2 * g * sums(7, 6) + g * g * sums(7, 7);
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      sum_sq -= c[k] * (of_w[k] - g * of_w_sq[k]);
+    }
     sum_sq = sum_sq < 0 ? 0 : sum_sq;
   }
 
-  Vector6 solve(const Vector6& b) const {
-    return scale.cwiseProduct(solver.solve(scale.cwiseProduct(b)));
-  }
-  bool is_determined() const { return solver.vectorD().minCoeff() > 1e-9; }
-
-  Vector6 scale;  // so that units do not matter
-  Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver;
-  Vector6 c;
+  ProductSums<8> sums;  // of 1, u, v, u^2, u v, v^2, w, w^2
+  NormalEquations<double, 6> equations;
+  Terms c = {};
   double g = 0;
   double sum_sq = 0;  // of the distances
+
+ private:
+  template <class Points>
+  static ProductSums<8> sums_of(const Points& for_each_point, const PatchFrame& frame) {
+    ProductSums<8> sums;
+    for_each_point([&](const Point3<double>& p, double, double) {
+      const auto [u, v, w] = frame.inside(p);
+      sums.add({1, u, v, u * u, u * v, v * v, w, w * w});
+    });
+    return sums;
+  }
+  static SmallMatrix<double, 6> normal(const ProductSums<8>& sums) {
+    SmallMatrix<double, 6> matrix;
+    for (std::size_t a = 0; a < 6; ++a) {
+      for (std::size_t b = 0; b < 6; ++b) {
+        matrix[a][b] = sums(a, b);
+      }
+    }
+    return matrix;
+  }
+  Terms column(std::size_t b) const {
+    return {sums(0, b), sums(1, b), sums(2, b), sums(3, b), sums(4, b), sums(5, b)};
+  }
 };
 
 }  // namespace detail
@@ -151,7 +186,6 @@ struct QuadricFit {
 /// grids hold; takes no memory and throws nothing. O(rows cols): two passes over the pixels.
 template <template <class> class CameraType, scalar S, grid Depth, contact_mask Mask>
 SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, const Mask& contact) {
-  using Eigen::Matrix2d, Eigen::Vector3d;
   SurfaceResult result;
   const auto depth = as_view(depth_mm);
   const auto mask = as_view(contact);
@@ -165,7 +199,7 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
           const double row = static_cast<double>(i), col = static_cast<double>(j);
           const auto p = point_at(eye, row, col, static_cast<double>(value(depth(i, j))));
           if (is_depth(p.z)) {
-            visit(Vector3d(p.x, p.y, p.z), row, col);
+            visit(p, row, col);
           }
         }
       }
@@ -182,41 +216,44 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
   // at the height above the centroid, the curvature of F = w - c - g w^2 = 0 along a unit tangent t
   // is t^T (Hessian of -F) t / |grad F|
   const double height = 2 * fit.c[0] / (1 + std::sqrt((std::max)(1 - 4 * fit.g * fit.c[0], 0.0)));
-  const Vector3d gradient(-fit.c[1], -fit.c[2], 1 - 2 * fit.g * height);
-  const Vector3d n = gradient.normalized(), tangent = n.unitOrthogonal();
-  Eigen::Matrix3d hessian;
-  hessian << 2 * fit.c[3], fit.c[4], 0, fit.c[4], 2 * fit.c[5], 0, 0, 0, 2 * fit.g;
-  Eigen::Matrix<double, 3, 2> along;
-  along << tangent, n.cross(tangent);
-  Eigen::SelfAdjointEigenSolver<Matrix2d> bend;
-  bend.computeDirect(Matrix2d(along.transpose() * hessian * along / gradient.norm()));
-  Eigen::Vector2d k = bend.eigenvalues();
-  along *= bend.eigenvectors();
+  const Point3<double> gradient = {-fit.c[1], -fit.c[2], 1 - 2 * fit.g * height};
+  const Point3<double> n = normalized(gradient);
+  const Point3<double> s = normalized(Point3<double>{n.z, 0, -n.x}), t = cross(n, s);
+  const auto bend = [&](const Point3<double>& a, const Point3<double>& b) {
+    return (2 * fit.c[3] * a.x * b.x + fit.c[4] * (a.x * b.y + a.y * b.x) +
+            2 * fit.c[5] * a.y * b.y + 2 * fit.g * a.z * b.z) /
+           norm(gradient);
+  };
+  const double mean = (bend(s, s) + bend(t, t)) / 2, half = (bend(s, s) - bend(t, t)) / 2;
+  const double radius = std::hypot(half, bend(s, t)), angle = std::atan2(bend(s, t), half) / 2;
+  std::array<double, 2> k = {mean + radius, mean - radius};
+  std::array<Point3<double>, 2> along = {std::cos(angle) * s + std::sin(angle) * t,
+                                         std::cos(angle) * t - std::sin(angle) * s};
   if (std::abs(k[0]) < std::abs(k[1])) {
-    k.reverseInPlace();
-    along.col(0).swap(along.col(1));
+    std::swap(k[0], k[1]);
+    std::swap(along[0], along[1]);
   }
-  const Vector3d normal = frame.axes * n, point = frame.center + height * frame.axes.col(2);
-  if (!fit.is_determined() || !(normal.z() > 0) || !point.allFinite() || !k.allFinite()) {
+  const Point3<double> normal = frame.outside(n), point = frame.center + height * frame.axes[2];
+  if (!fit.equations.good || !(normal.z > 0) || !is_finite(point) || !is_finite(k[0]) ||
+      !is_finite(k[1])) {
     return result;
   }
   const double pixels = static_cast<double>(frame.pixels), variance = fit.sum_sq / (pixels - 6);
-  const auto sd = [&](const Vector3d& t) {
-    detail::QuadricFit::Vector6 h;
-    h << 0, 0, 0, 2 * t.x() * t.x(), 2 * t.x() * t.y(), 2 * t.y() * t.y();
-    return std::sqrt((std::max)(variance * h.dot(fit.solve(h)), 0.0));
+  const auto sd = [&](const Point3<double>& d) {
+    const double by_c =
+        fit.equations.variance({0, 0, 0, 2 * d.x * d.x, 2 * d.x * d.y, 2 * d.y * d.y});
+    return std::sqrt((std::max)(variance * by_c, 0.0));
   };
-  const auto as_point = [](const Vector3d& p) { return Point3<double>{p.x(), p.y(), p.z()}; };
   return {.status = SurfaceStatus::ok,
           .pixels = frame.pixels,
           .curvature_1_per_mm = k[0],
           .curvature_2_per_mm = k[1],
-          .curvature_1_sd_per_mm = sd(along.col(0)),
-          .curvature_2_sd_per_mm = sd(along.col(1)),
-          .direction_1 = as_point(frame.axes * along.col(0)),
-          .direction_2 = as_point(frame.axes * along.col(1)),
-          .point_mm = as_point(point),
-          .normal = as_point(normal),
+          .curvature_1_sd_per_mm = sd(along[0]),
+          .curvature_2_sd_per_mm = sd(along[1]),
+          .direction_1 = frame.outside(along[0]),
+          .direction_2 = frame.outside(along[1]),
+          .point_mm = point,
+          .normal = normal,
           .rms_mm = std::sqrt(fit.sum_sq / pixels)};
 }
 
