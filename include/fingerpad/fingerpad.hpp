@@ -12,6 +12,7 @@
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/contact/surface.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
