@@ -49,7 +49,8 @@ template <int last, class S>
 }
 
 /// The solution for one camera and fluid, for pixels up to `radius_px` from the axis. The error is
-/// below 1e-5 mm in float and 1e-12 mm in double for depths up to 14 mm of the published fluid.
+/// below 1e-5 mm in float and 1e-12 mm in double for depths up to 14 mm of the published fluid, at
+/// the angles from which a camera sees the published pad.
 template <class S>
 class DepthPolynomial {
   static_assert(std::same_as<S, float> || std::same_as<S, double>,
