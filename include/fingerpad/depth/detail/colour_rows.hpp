@@ -158,14 +158,16 @@ class ColourRows {
         rise_[k] = S(std::exp(delta * pencil.path_factor * l));
         scattered_[k] = g * S(scattered_light(l, fluid.c_red_per_mm, pencil));
         per_g_[k] = S(1) / g;
-        gain_[gain_.size() == rise_.size() ? k : 0] = gain;
+        if (!reference.red_gain.empty()) {
+          gain_[k] = gain;
+        }
         used_[k] = 1;
       }
     });
     if (window_px > 1) {
       const std::array<int, 2> size = two_windows(window_px, step);
-      const double inner = size[0] * size[0] - 1,
-                   outer = size[1] * size[1] - 1;  // 12 second moments
+      const double inner = size[0] * size[0] - 1;  // 12 times the second moment
+      const double outer = size[1] * size[1] - 1;
       weight_ = {S(outer / (outer - inner)), S(-inner / (outer - inner))};
       real_means_.emplace(area.rows, cols_, size);
       if constexpr (std::same_as<S, float>) {
