@@ -203,7 +203,8 @@ class StridedView {
   Index col_stride_ = 1;
 };
 
-/// Cells computed on demand by a function of (row, col): a conversion, a synthetic image.
+/// Cells found on demand by a function of (row, col): a conversion, a synthetic image, the cells of
+/// a grid that offers no more than access to them.
 template <class F>
 class LazyView {
  public:
@@ -220,22 +221,6 @@ class LazyView {
 };
 template <class F>
 LazyView(Index, Index, F) -> LazyView<F>;
-
-/// Fallback view: a reference to a grid that offers no more than access to its cells.
-template <class G>
-class RefView {
- public:
-  // A grid may overload operator&, and std::addressof would bring <memory> into every header.
-  constexpr explicit RefView(G& g) : grid_(__builtin_addressof(g)) {}
-  constexpr Index rows() const { return detail::traits_of<G>::rows(*grid_); }
-  constexpr Index cols() const { return detail::traits_of<G>::cols(*grid_); }
-  constexpr decltype(auto) operator()(Index i, Index j) const {
-    return detail::traits_of<G>::at(*grid_, i, j);
-  }
-
- private:
-  G* grid_;
-};
 
 template <class T>
 struct grid_traits<StridedView<T>> {
@@ -255,13 +240,11 @@ template <class T>
 inline constexpr bool is_view<StridedView<T>> = true;
 template <class F>
 inline constexpr bool is_view<LazyView<F>> = true;
-template <class G>
-inline constexpr bool is_view<RefView<G>> = true;
 }  // namespace detail
 
 /// The most capable view of a grid: the grid itself if it is a view, a StridedView if it lies in
-/// plain memory, else a RefView. The grid must outlive the view; a temporary that owns its cells is
-/// refused at compile time ("use of deleted function").
+/// plain memory, else a LazyView that reads its cells. The grid must outlive the view; a temporary
+/// that owns its cells is refused at compile time ("use of deleted function").
 template <grid G>
 constexpr auto as_view(G&& g) {
   using Traits = detail::traits_of<G>;
@@ -271,7 +254,11 @@ constexpr auto as_view(G&& g) {
     return StridedView(Traits::data(g), Traits::rows(g), Traits::cols(g), Traits::row_stride(g),
                        Traits::col_stride(g));
   } else {
-    return RefView<std::remove_reference_t<G>>(g);
+    // A grid may overload operator&, and std::addressof would bring <memory> into every header.
+    return LazyView(Traits::rows(g), Traits::cols(g),
+                    [g = __builtin_addressof(g)](Index i, Index j) -> decltype(auto) {
+                      return Traits::at(*g, i, j);
+                    });
   }
 }
 template <grid G>
