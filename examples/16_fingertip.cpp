@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   const auto reference = fit_reference(camera, fluid, free_pad.red, free_pad.green, shape);
   fingerpad::FingertipOptions options{camera, fluid, reference, shape.rows, shape.cols};
   options.contact.free_apex_mm = 13.03;
-  fingerpad::Fingertip<decltype(options.reference), DepthAndContact> fingertip(options);
+  fingerpad::Fingertip<DepthAndContact> fingertip(options);
 
   // Every frame.
   const auto no_dots = fingerpad::StridedView<const fingerpad::Point2<double>>();

@@ -74,7 +74,7 @@ struct Watch {
 template <class Methods, class Options>
 auto chain_of(Options options) {
   options.contact.places_edge = !std::is_base_of_v<chain::Lean, Methods>;
-  return Fingertip<decltype(options.reference), Methods>(options);
+  return Fingertip<Methods>(options);
 }
 
 template <class Chain>

@@ -88,7 +88,7 @@ template <class Methods>
 std::vector<Kind> of_chain() {
   auto options = pressed().options();
   options.contact.places_edge = !std::is_same_v<Methods, chain::Lean>;
-  static Fingertip<std::remove_cvref_t<decltype(options.reference)>, Methods> fingertip(options);
+  static Fingertip<Methods> fingertip(options);
   static const auto frames =
       made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
   const Index side_dots = pressed()[0].side_dots_mm.cols();

@@ -81,7 +81,7 @@ struct Methods : fingerpad::FingertipMethods {
   using Solver = fingerpad::BalancedRim;
 };
 using Reference = fingerpad::DepthReference<float>;
-using Options = fingerpad::FingertipOptions<Reference>;
+using Options = fingerpad::FingertipOptions;
 
 class VirtualPad {
  public:
@@ -127,7 +127,7 @@ class VirtualPad {
   const Numbers& numbers() const { return numbers_; }
 
  private:
-  using Tip = fingerpad::Fingertip<Reference, Methods>;
+  using Tip = fingerpad::Fingertip<Methods>;
 
   void place_dots() {
     const double middle = (dots_across - 1) / 2.0;
@@ -362,12 +362,12 @@ class OwnPictures {
     const auto free_depth = cap(camera, base_radius_mm, height_mm);
     auto reference = fit_reference(camera, fluid, channel(free_, rows_, cols_, 0),
                                    channel(free_, rows_, cols_, 1), free_depth.view());
-    fingerpad::FingertipOptions<Reference> o{camera, fluid, std::move(reference), rows_, cols_};
+    fingerpad::FingertipOptions o{camera, fluid, std::move(reference), rows_, cols_};
     const double scale = 0.08 / pitch;
     o.smoothing_px = 2 * std::clamp(static_cast<int>(14 * scale), 1, 54) + 1;
     o.contact.ring.radius_px = 25 * scale;
     o.contact.free_apex_mm = height_mm;
-    fingerpad::Fingertip<Reference, DepthAndContact> tip(o);
+    fingerpad::Fingertip<DepthAndContact> tip(o);
     const fingerpad::ColorFrame seen(channel(pressed_, rows_, cols_, 0),
                                      channel(pressed_, rows_, cols_, 1));
     const auto touch = tip(seen, fingerpad::StridedView<const Point2<double>>(), 0);

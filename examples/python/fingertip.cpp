@@ -24,7 +24,7 @@ using Reference = fingerpad::DepthReference<float>;
 struct Methods : fingerpad::FingertipMethods {
   static constexpr int sampling = 1;
 };
-using Options = fingerpad::FingertipOptions<Reference>;
+using Options = fingerpad::FingertipOptions;
 using WrenchOptions = fingerpad::WrenchOptions<double>;
 
 /// A fingertip; calls from several threads are serialised.
@@ -69,7 +69,7 @@ class Fingertip {
   }
 
  private:
-  fingerpad::Fingertip<Reference, Methods> fingertip_;
+  fingerpad::Fingertip<Methods> fingertip_;
   std::mutex mutex_;
 };
 

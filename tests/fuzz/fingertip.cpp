@@ -70,7 +70,7 @@ void try_fingertip(Input& in) {
     few_lines.wrench.rows = 4;
     return few_lines;
   }();
-  using Tip = Fingertip<std::remove_cvref_t<decltype(options.reference)>>;
+  using Tip = Fingertip<>;
   static const Tip start(options);
   static Tip tip = start;
   tip = start;  // into the memory that is there: to take it anew costs a third of an execution

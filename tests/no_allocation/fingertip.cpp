@@ -12,7 +12,7 @@ TEMPLATE_TEST_CASE("the whole chain: a frame allocates nothing",
                    Shared<ByDefault>) {
   const PressedFrames frames(240, 320, 2);
   const auto options = frames.options();
-  fingerpad::Fingertip<decltype(options.reference), TestType> fingertip(options);
+  fingerpad::Fingertip<TestType> fingertip(options);
   const Inputs first = frames[0].view(), second = frames[1].view();
   const long before = test::allocations();
   const auto a = touch_of(fingertip, first);

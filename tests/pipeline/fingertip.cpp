@@ -29,7 +29,7 @@ const PressedFrames& frames() {
 template <class Methods>
 class Run {
  public:
-  using Chain = fingerpad::Fingertip<decltype(frames().options().reference), Methods>;
+  using Chain = fingerpad::Fingertip<Methods>;
 
   Run() : chain_(frames().options()) {
     for (std::size_t k = 0; k < frames().size(); ++k) {
@@ -135,7 +135,7 @@ struct SampledWithLight : DepthAlone {
   static constexpr bool has_neighbour_light = true;
 };
 template <class Methods>
-using TipOf = fingerpad::Fingertip<decltype(frames().options().reference), Methods>;
+using TipOf = fingerpad::Fingertip<Methods>;
 
 }  // namespace
 
@@ -193,8 +193,7 @@ TEST_CASE("samples beside the pad are not taken", "[chain]") {
   constexpr int step = 2;
   const auto reference = frames().options().reference;
   const auto pad = sampled(reference, step);
-  fingerpad::detail::FrameSamples<decltype(frames().options().reference), std::uint8_t, step, 1>
-      samples(reference);
+  fingerpad::detail::FrameSamples<std::uint8_t, step, 1> samples(reference);
   test::Frame<std::uint8_t> bright(reference.rows, reference.cols);
   for (auto* channel : {&bright.red, &bright.green}) {
     std::fill(channel->cells.begin(), channel->cells.end(), std::uint8_t(200));

@@ -95,8 +95,8 @@ class PressedFrames {
   /// Options that refer to this object.
   auto options() const {
     auto reference = pad_.reference<float>();
-    fingerpad::FingertipOptions<decltype(reference)> f{pad_.camera, pad_.fluid,
-                                                       std::move(reference), pad_.rows, pad_.cols};
+    fingerpad::FingertipOptions f{pad_.camera, pad_.fluid, std::move(reference), pad_.rows,
+                                  pad_.cols};
     f.free_dots_mm = free_dots_.view();
     f.rim_mm = rim_.view();
     // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px at most
@@ -104,7 +104,7 @@ class PressedFrames {
     f.smoothing_px = (std::min)(2 * static_cast<int>(14 * scale) + 1, 109);
     f.contact.ring.radius_px = 25 * scale;
     // by area: the plate's pressure on it; by depth: a line between two of the frames
-    using NormalLookUp = typename decltype(f)::NormalLookUp;
+    using NormalLookUp = fingerpad::FingertipOptions::NormalLookUp;
     const typename NormalLookUp::Errors errors{.residual_sd_n = 0.1};
     f.force_of_area = NormalLookUp({{0, pressure_mpa}, 50, 400}, {}, errors);
     const auto of_depth = [&](double contact_mm) {

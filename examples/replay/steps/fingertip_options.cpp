@@ -11,8 +11,8 @@
 namespace replay {
 namespace {
 
+using fingerpad::FingertipOptions;
 using fingerpad::Point3;
-using FingertipOptions = fingerpad::FingertipOptions<Reference>;
 
 Reference reference_of(const Recording& recording) {
   const auto fit = [&](const auto& frame) {

@@ -34,11 +34,11 @@ using Reference =
 
 /// Options together with the points that they view.
 struct FingertipSettings {
-  fingerpad::FingertipOptions<Reference> options;
+  fingerpad::FingertipOptions options;
   std::vector<fingerpad::Point3<double>> free_dots_mm = {};
   std::vector<fingerpad::Point3<double>> rim_mm = {};
 
-  explicit FingertipSettings(fingerpad::FingertipOptions<Reference> of) : options(std::move(of)) {}
+  explicit FingertipSettings(fingerpad::FingertipOptions of) : options(std::move(of)) {}
   FingertipSettings(FingertipSettings&&) = default;
 };
 

@@ -27,7 +27,7 @@ bool has_cells(const cv::Mat& image) {
   return (image.depth() == CV_16U) == std::is_same_v<Pixel, std::uint16_t>;
 }
 
-using FingertipOptions = fingerpad::FingertipOptions<Reference>;
+using fingerpad::FingertipOptions;
 
 template <class PixelType>
 struct Methods : fingerpad::FingertipMethods {
@@ -54,7 +54,7 @@ cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
 /// Depth of the free pad, whose frames may have another pixel type than those of the recording.
 cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& image) {
   const auto depth = [&]<class Pixel>(Pixel) {
-    fingerpad::Fingertip<Reference, DepthAlone<Pixel>> fingertip(options);
+    fingerpad::Fingertip<DepthAlone<Pixel>> fingertip(options);
     (void)fingertip(color_of<Pixel>(image), DotGrid(), SpaceGrid(), 0);
     return copy_of(fingertip.depth_mm());
   };
@@ -214,7 +214,7 @@ class Step : public FingertipStep {
 
   const Recording& recording_;
   bool with_dots_;
-  fingerpad::Fingertip<Reference, Methods<Pixel>> fingertip_;
+  fingerpad::Fingertip<Methods<Pixel>> fingertip_;
   std::vector<int> border_order_;  ///< empty without six-axis force
   SpaceGrid no_side_dots_;
 };

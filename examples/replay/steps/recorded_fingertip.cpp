@@ -6,11 +6,11 @@
 namespace replay {
 
 struct RecordedFingertip::Whole {
-  fingerpad::Fingertip<Reference> fingertip;
+  fingerpad::Fingertip<> fingertip;
 };
 
 RecordedFingertip::RecordedFingertip(const FingertipSettings& settings)
-    : whole_(new Whole{fingerpad::Fingertip<Reference>(settings.options)}) {}
+    : whole_(new Whole{fingerpad::Fingertip<>(settings.options)}) {}
 RecordedFingertip::~RecordedFingertip() = default;
 
 fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,

@@ -20,7 +20,7 @@ inline namespace v0 {
 /// Use one object per pad, and do not share it between threads: a frame changes its depth map,
 /// mask, dots and the memory of the object. A frame allocates nothing, throws nothing, and takes
 /// bounded time, O(rows cols) for the image and O(dots) for the rest.
-template <class Reference, class Methods = FingertipMethods>
+template <class Methods = FingertipMethods>
 class Fingertip {
   using Executor = typename Methods::Executor;
   static constexpr bool has_contact = Methods::has_contact;
@@ -31,7 +31,7 @@ class Fingertip {
 
  public:
   /// Refuses bad parameters (parameter_error).
-  explicit Fingertip(const FingertipOptions<Reference>& options)
+  explicit Fingertip(const FingertipOptions& options)
       : image_(options),
         light_(options),
         region_(options),
@@ -128,26 +128,19 @@ class Fingertip {
   }
 
  private:
-  using Options = FingertipOptions<Reference>;
-
-  using Image = detail::FingertipImage<Options, Methods>;
+  using Image = detail::FingertipImage<Methods>;
   using Light = std::conditional_t<Methods::has_neighbour_light,
-                                   detail::FingertipLight<Options, Methods>,
+                                   detail::FingertipLight<Methods>,
                                    detail::NoFingertipStage>;
-  using Contact = std::conditional_t<has_contact,
-                                     detail::FingertipContact<Options, Methods>,
-                                     detail::NoFingertipStage>;
-  using Dots =
-      std::conditional_t<has_dots, detail::FingertipDots<Options>, detail::NoFingertipStage>;
-  using FlatArea = std::conditional_t<has_flat_area,
-                                      detail::FingertipFlatArea<Options, Methods>,
-                                      detail::NoFingertipStage>;
-  using LookUp = std::conditional_t<has_look_up,
-                                    detail::FingertipLookUp<Options, has_flat_area>,
-                                    detail::NoFingertipStage>;
-  using Balance = std::conditional_t<has_wrench,
-                                     detail::FingertipBalance<Options, Methods>,
-                                     detail::NoFingertipStage>;
+  using Contact =
+      std::conditional_t<has_contact, detail::FingertipContact<Methods>, detail::NoFingertipStage>;
+  using Dots = std::conditional_t<has_dots, detail::FingertipDots, detail::NoFingertipStage>;
+  using FlatArea = std::
+      conditional_t<has_flat_area, detail::FingertipFlatArea<Methods>, detail::NoFingertipStage>;
+  using LookUp = std::
+      conditional_t<has_look_up, detail::FingertipLookUp<has_flat_area>, detail::NoFingertipStage>;
+  using Balance =
+      std::conditional_t<has_wrench, detail::FingertipBalance<Methods>, detail::NoFingertipStage>;
 
   static bool has_depth(const FingertipResult& touch) {
     return touch.depth.ok() && touch.neighbour_light == FrameStatus::ok;

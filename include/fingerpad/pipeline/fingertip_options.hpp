@@ -84,12 +84,11 @@ struct FingertipMethods {
 
 /// Everything that is known of a fingertip before its first frame. Settings of a stage that is
 /// switched off are ignored.
-template <class Reference>
 struct FingertipOptions {
   Camera<double> camera;
   Absorption<double> fluid;
-  Reference reference;  ///< of the free pad, from fit_reference()
-  Index rows = 0;       ///< of a frame, px
+  DepthReference<float> reference;  ///< of the free pad, from fit_reference()
+  Index rows = 0;                   ///< of a frame, px
   Index cols = 0;
   int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109; 1: no smoothing
   std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not removed
@@ -120,9 +119,6 @@ struct FingertipOptions {
   /// With calibrated_modulus_n_per_mm, pressure_from_rim() answers frames whose pressure is NaN.
   WrenchOptions<double> wrench = {};
 };
-template <class Reference>
-FingertipOptions(const Camera<double>&, const Absorption<double>&, const Reference&, Index, Index)
-    -> FingertipOptions<Reference>;
 
 /// Red and green channel of a frame, as views.
 template <class Red, class Green>

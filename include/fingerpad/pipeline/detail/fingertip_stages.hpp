@@ -23,25 +23,26 @@ inline namespace v0 {
 namespace detail {
 
 /// Depth of the frame.
-template <class Options, class Methods>
+template <class Methods>
 struct FingertipImage {
   using Executor = typename Methods::Executor;
   static constexpr int step = Methods::sampling;
-  using Samples =
-      FrameSamples<decltype(Options::reference), typename Methods::Pixel, step, Executor::threads>;
-  Index rows, cols;       // of frames
-  Camera<double> camera;  // of samples, like all members below
+  using Samples = FrameSamples<typename Methods::Pixel, step, Executor::threads>;
+  Index rows, cols;                             // of frames
+  Camera<double> camera;                        // of samples, like all members below
   std::vector<DepthEstimator<float>> estimate;  // one per thread
   Samples samples;
   OwnedGrid<float> depth;
   OwnedGrid<PixelStatus> status;
 
-  explicit FingertipImage(const Options& o)
+  explicit FingertipImage(const FingertipOptions& o)
       : rows(o.rows),
         cols(o.cols),
         camera(sampled(o.camera, step)),
         estimate(static_cast<std::size_t>(Executor::threads),
-                 DepthEstimator(camera, o.fluid, sampled(o.reference, step),
+                 DepthEstimator(camera,
+                                o.fluid,
+                                sampled(o.reference, step),
                                 {.window_px = o.smoothing_px, .step = step})),
         samples(o.reference),
         depth(o.reference.rows / step, o.reference.cols / step),
@@ -75,12 +76,12 @@ struct FingertipImage {
 };
 
 /// Compensation of the light from neighbouring membrane.
-template <class Options, class Methods>
+template <class Methods>
 struct FingertipLight {
   static constexpr int step = Methods::sampling;
   std::optional<NeighbourLightCompensation<>> compensate;
 
-  explicit FingertipLight(const Options& o) {
+  explicit FingertipLight(const FingertipOptions& o) {
     if (o.neighbour_light) {
       expects(o.free_depth_mm.rows() == o.rows && o.free_depth_mm.cols() == o.cols,
               "FingertipOptions", "rows of free_depth_mm",
@@ -104,7 +105,7 @@ struct FingertipLight {
   }
 
   /// Distance between the points seen by neighbouring samples at the pad's mean depth.
-  static float pitch_on_membrane_mm(const Options& o) {
+  static float pitch_on_membrane_mm(const FingertipOptions& o) {
     double sum_mm = 0, count = 0;
     for (Index i = 0; i < o.rows; ++i) {
       for (Index j = 0; j < o.cols; ++j) {
@@ -120,20 +121,20 @@ struct FingertipLight {
 };
 
 /// Contact region.
-template <class Options, class Methods>
+template <class Methods>
 struct FingertipContact {
   static constexpr int step = Methods::sampling;
   ContactRegion<> region;
   OwnedGrid<std::uint8_t> mask;
 
-  explicit FingertipContact(const Options& o)
+  explicit FingertipContact(const FingertipOptions& o)
       : region(sampled(o.camera, step), o.rows / step, o.cols / step, test_of_samples(o)),
         mask(region.rows(), region.cols()) {}
 
   /// Refuses a free apex more than 5 % off the highest point of the reference's shape: one of them
   /// is of another pad or unit, and every contact depth would be off by their difference. 5 % of a
   /// pad of 13 mm are 0.65 mm, more than a measured height errs.
-  static ContactTest test_of_samples(const Options& o) {
+  static ContactTest test_of_samples(const FingertipOptions& o) {
     ContactTest test = o.contact;
     double apex_mm = 0;
     for (const auto& depth_mm : o.reference.depth_mm) {
@@ -156,7 +157,6 @@ struct FingertipContact {
 };
 
 /// Slip and motion from the printed dots.
-template <class Options>
 struct FingertipDots {
   struct Followed {
     ObjectMotion<> motion;
@@ -166,7 +166,7 @@ struct FingertipDots {
     FrictionLimit<> friction;
     FrictionLimit<>::State friction_state;
 
-    explicit Followed(const Options& o)
+    explicit Followed(const FingertipOptions& o)
         : motion(o.free_dots_mm),
           motion_state(motion.start()),
           stick(o.free_dots_mm.rows(), o.free_dots_mm.cols(), o.stick),
@@ -181,7 +181,7 @@ struct FingertipDots {
   double radius_px;
   std::optional<Followed> followed;  // empty without dots
 
-  explicit FingertipDots(const Options& o)
+  explicit FingertipDots(const FingertipOptions& o)
       : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         touching(at_mm.rows, at_mm.cols),
         states(at_mm.rows, at_mm.cols),
@@ -261,12 +261,12 @@ struct FingertipDots {
 };
 
 /// The area of a flat contact with the same force.
-template <class Options, class Methods>
+template <class Methods>
 struct FingertipFlatArea {
   static constexpr int step = Methods::sampling;
   EquivalentFlatArea<> of;
 
-  explicit FingertipFlatArea(const Options& o)
+  explicit FingertipFlatArea(const FingertipOptions& o)
       : of(sampled(o.camera, step), o.rows / step, o.cols / step, o.flat_area) {}
 
   template <class Image, class Contact>
@@ -278,15 +278,15 @@ struct FingertipFlatArea {
 };
 
 /// Forces by look-up.
-template <class Options, bool by_flat_area>
+template <bool by_flat_area>
 struct FingertipLookUp {
   std::optional<ContactShift<>> shift;  // empty without dots
   std::optional<ContactShift<>::Workspace> work;
-  std::optional<typename Options::NormalLookUp> of_area, of_depth;
-  std::optional<typename Options::ShearLookUp> of_shift;
+  std::optional<FingertipOptions::NormalLookUp> of_area, of_depth;
+  std::optional<FingertipOptions::ShearLookUp> of_shift;
   bool shear_by_depth;
 
-  explicit FingertipLookUp(const Options& o)
+  explicit FingertipLookUp(const FingertipOptions& o)
       : of_area(o.force_of_area),
         of_depth(o.force_of_depth),
         of_shift(o.shear),
@@ -345,7 +345,7 @@ struct FingertipLookUp {
 };
 
 /// The six-axis force.
-template <class Options, class Methods>
+template <class Methods>
 struct FingertipBalance {
   using Solver = Wrench<typename Methods::Solver>;
   static constexpr int step = Methods::sampling;
@@ -356,7 +356,7 @@ struct FingertipBalance {
     typename Solver::Workspace work;
     std::optional<double> modulus_n_per_mm;
 
-    explicit Balance(const Options& o)
+    explicit Balance(const FingertipOptions& o)
         : heights(
               o.rows / step, o.cols / step, sampled(o.camera, step), o.wrench.base_radius_mm + 1),
           map(heights.map()),
@@ -366,7 +366,7 @@ struct FingertipBalance {
   };
   std::optional<Balance> balance;  // empty without a rim
 
-  explicit FingertipBalance(const Options& o) {
+  explicit FingertipBalance(const FingertipOptions& o) {
     if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
       balance.emplace(o);
     }

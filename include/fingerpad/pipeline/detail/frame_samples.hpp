@@ -11,6 +11,7 @@
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/pad.hpp"
 #include "fingerpad/depth/sampling.hpp"
 
@@ -109,14 +110,14 @@ template <class Reference, class S>
 }
 
 /// Samples of Step x Step pixels. Maps over all pixels are computed on the first request per frame.
-template <class Reference, class Pixel, int Step, int Threads>
+template <class Pixel, int Step, int Threads>
 class FrameSamples {
   using Sampler = FrameSampler<Pixel, Step>;
 
  public:
   using Cell = typename Sampler::Sample;
 
-  explicit FrameSamples(const Reference& reference)
+  explicit FrameSamples(const DepthReference<float>& reference)
       : free_(reference),
         free_samples_(sampled(reference, Step)),
         red_(free_samples_.rows, free_samples_.cols),
@@ -182,7 +183,7 @@ class FrameSamples {
     }
   }
 
-  Reference free_, free_samples_;
+  DepthReference<float> free_, free_samples_;
   std::vector<PadArea> rows_;  // in each row, from the first sample of the pad to the last
   OwnedGrid<Cell> red_, green_;
   OwnedGrid<float> depth_;
@@ -194,12 +195,12 @@ class FrameSamples {
 };
 
 /// Each pixel is a sample.
-template <class Reference, class Pixel, int Threads>
-class FrameSamples<Reference, Pixel, 1, Threads> {
+template <class Pixel, int Threads>
+class FrameSamples<Pixel, 1, Threads> {
  public:
   using Cell = Pixel;
 
-  explicit FrameSamples(const Reference&) {}
+  explicit FrameSamples(const DepthReference<float>&) {}
 
   template <class Frame, class Executor>
   const Frame& operator()(const Frame& frame, Executor&) {
