@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
@@ -34,10 +35,9 @@ int main(int argc, char** argv) {
 
   // Once per sensor: the threshold from the free pad's shape. More frames of it would also give the
   // noise.
-  fingerpad::FreePadCalibration<> free_pad(camera, shape.rows, shape.cols);
-  free_pad.add(shape);
+  const auto free_pad = fit_contact_threshold(camera, std::vector{shape});
   fingerpad::ContactTest test{.free_apex_mm = 13.03};
-  test.threshold_per_mm = free_pad.fit().threshold_per_mm;
+  test.threshold_per_mm = free_pad.threshold_per_mm;
   fingerpad::ContactRegion<> contact_of(camera, shape.rows, shape.cols, test);
 
   // Every frame.

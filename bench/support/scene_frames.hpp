@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
@@ -47,11 +48,11 @@ class SceneFrames {
   using Region = fingerpad::ContactRegion<>;
 
   SceneFrames() {
-    fingerpad::FreePadCalibration<> calibration(pad().camera, pad().rows, pad().cols);
+    std::vector<test::Image<float>> free_mm;
     for (std::uint64_t seed = 901; seed <= 904; ++seed) {
-      calibration.add(test::estimate<float>(estimator_, scene_.frame(free_mm_, seed)).depth_mm);
+      free_mm.push_back(test::estimate<float>(estimator_, scene_.frame(free_mm_, seed)).depth_mm);
     }
-    threshold_per_mm_ = calibration.fit().threshold_per_mm;
+    threshold_per_mm_ = fit_contact_threshold(pad().camera, free_mm).threshold_per_mm;
   }
 
   SceneFrame make(const std::string& heights, std::uint64_t seed) {

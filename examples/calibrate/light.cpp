@@ -232,21 +232,21 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   const DepthMap free_mm = replay::read_depth_image(recording / sensor.reference_depth);
   const std::vector<cv::Mat> frames = read_pictures(recording / "free");
   DepthMeter meter(sensor, reference, free_mm);
-  fingerpad::FreePadCalibration<> calibration(sensor.camera, reference.rows, reference.cols);
-  DepthMap last;
+  std::vector<DepthMap> depths_mm;
   for (const cv::Mat& frame : frames) {
-    last = meter(frame);
-    if (!calibration.add(last)) {
+    if (frame.size() != reference.size()) {
       replay::fail(recording / "free", "the frames must have the size of the reference");
     }
+    depths_mm.push_back(meter(frame));
   }
-  const auto pad = calibration.fit();
+  const DepthMap& last = depths_mm.back();
+  const auto pad = fit_contact_threshold(sensor.camera, depths_mm);
   Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
-  report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
-                       {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
-                       {"edge_noise_mm", pad.edge_noise_mm}};
+  report.parameters = {
+      {"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
+      {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm}};
   report.doubt(!pad.ok(), text_of(pad));
-  report.doubt(pad.frames < 3, "two frames are too few to estimate the noise: record ten");
+  report.doubt(frames.size() < 3, "two frames are too few to estimate the noise: record ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
                "the threshold is set by the noise instead of the edge: use more light or a wider "
                "smoothing window");

@@ -140,11 +140,7 @@ Trial contact() {
     return frames;
   };
   const auto fit = [=](const std::vector<Map>& frames) {
-    fingerpad::FreePadCalibration<double> calibration(camera, rows, cols, {6});
-    for (const Map& frame : frames) {
-      (void)calibration.add(frame);
-    }
-    const auto pad = calibration.fit();
+    const auto pad = fit_contact_threshold(camera, frames, {6});
     return Estimate{{pad.threshold_per_mm, pad.median_per_mm},
                     diagonal({pad.median_error_per_mm / 2, pad.median_error_per_mm})};
   };

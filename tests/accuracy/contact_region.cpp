@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/depth/depth.hpp"
@@ -67,11 +68,10 @@ struct Exact {
 
 TEST_CASE("contact of finite-element membranes by their heights", "[contact_region]") {
   const Exact exact;
-  FreePadCalibration<> calibration(exact.camera, 480, 480, {12});
-  calibration.add(exact.depth("free"));
+  const std::vector free = {exact.depth("free")};
   ContactTest test;
   test.ring.radius_px = 12;
-  test.threshold_per_mm = calibration.fit().threshold_per_mm;
+  test.threshold_per_mm = fit_contact_threshold(exact.camera, free, {12}).threshold_per_mm;
   CHECK(test.threshold_per_mm == Approx(0.025).epsilon(0.2));
   ContactRegion<> region(exact.camera, 480, 480, test);
   Image<std::uint8_t> mask(480, 480);
@@ -101,11 +101,11 @@ TEST_CASE("contact of finite-element membranes by noisy frames", "[contact_regio
   const auto measured = [&](const Image<double>& truth) {
     return test::estimate<float>(estimator, scene.frame(truth, ++seed)).depth_mm;
   };
-  FreePadCalibration<> calibration(pad.camera, pad.rows, pad.cols);
+  std::vector<Image<float>> free_frames;
   for (int frame = 0; frame < 4; ++frame) {
-    calibration.add(measured(free));
+    free_frames.push_back(measured(free));
   }
-  const FreePadCurvature curvature = calibration.fit();
+  const ThresholdFit curvature = fit_contact_threshold(pad.camera, free_frames);
   ContactTest test;
   test.threshold_per_mm = curvature.threshold_per_mm;
   CAPTURE(curvature.threshold_per_mm, curvature.median_per_mm, curvature.noise_per_mm);

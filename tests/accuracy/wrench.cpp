@@ -369,11 +369,11 @@ class Rendered {
       : reference_(scene_.reference(free_)),
         estimator_(scene_.pad().camera, scene_.pad().fluid, reference_),
         heights_(scene_.pad().rows, scene_.pad().cols, scene_.pad().camera) {
-    FreePadCalibration<> calibration(scene_.pad().camera, scene_.pad().rows, scene_.pad().cols);
+    std::vector<Image<float>> free_mm;
     for (std::uint64_t frame = 1; frame <= 4; ++frame) {
-      calibration.add(test::estimate<float>(estimator_, scene_.frame(free_, frame)).depth_mm);
+      free_mm.push_back(test::estimate<float>(estimator_, scene_.frame(free_, frame)).depth_mm);
     }
-    test_.threshold_per_mm = calibration.fit().threshold_per_mm;
+    test_.threshold_per_mm = fit_contact_threshold(scene_.pad().camera, free_mm).threshold_per_mm;
   }
 
   const PadHeights<>::Map& heights(const WrenchFrame& f, Seen seen) {

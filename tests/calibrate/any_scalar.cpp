@@ -139,23 +139,17 @@ struct FreePadByPitch {
   Results<S> operator()(const S& p) const {
     OrthographicCamera<S> plan;
     plan.pitch_mm = S(0.16) * p;
-    FreePadCalibration<S> calibration(plan, 40, 44, {6});
+    std::vector<Image<S>> frames;
     Random random(7);
     for (int k = 0; k < 3; ++k) {
-      REQUIRE(calibration.add(map_of<S>(40, 44, [&](Index i, Index j) {
+      frames.push_back(map_of<S>(40, 44, [&](Index i, Index j) {
         const double x = 0.16 * (static_cast<double>(j) - 22),
                      y = 0.16 * (static_cast<double>(i) - 20);
         return S(9 - 0.025 * (x * x + y * y) + 2e-4 * random.normal());
-      })));
+      }));
     }
-    const auto pad = calibration.fit();
-    using T = decltype(pad.threshold_per_mm);
-    Results<T> all = {pad.threshold_per_mm, pad.median_per_mm, pad.noise_per_mm, pad.edge_noise_mm};
-    Results<S> out;
-    for (const T& x : all) {
-      out.push_back(S(x));
-    }
-    return out;
+    const auto pad = fit_contact_threshold<S>(plan, frames, {6});
+    return {pad.threshold_per_mm, pad.median_per_mm, pad.noise_per_mm, pad.median_error_per_mm};
   }
 };
 

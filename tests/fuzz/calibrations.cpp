@@ -191,10 +191,11 @@ void try_free_pad(Input& in) {
   Camera<double> camera;
   camera.center_x_px = camera.center_y_px = 20;
   camera.pitch_mm = in.number(0.1, 1);
-  FreePadCalibration<> calibration(camera, rows, cols, {.radius_px = in.number(1, 8)});
-  Grid<float> depth(rows, cols);
+  const CurvatureRing ring = {.radius_px = in.number(1, 8)};
+  std::vector<Grid<float>> depths;
   const double bend = in.number(0, 0.02);
   for (Index frames = in.whole(0, 4); frames > 0; --frames) {
+    Grid<float>& depth = depths.emplace_back(rows, cols);
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
         const double x = static_cast<double>(j - 20), y = static_cast<double>(i - 20);
@@ -204,9 +205,12 @@ void try_free_pad(Input& in) {
     for (Index k = in.whole(0, 8); k > 0 && rows > 0 && cols > 0; --k) {
       depth.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = in.cell<float>(0, 15);
     }
-    (void)calibration.add(depth.view());
   }
-  const FreePadCurvature pad = calibration.fit();
+  std::vector<StridedView<const float>> views;
+  for (const Grid<float>& depth : depths) {
+    views.push_back(depth.view());
+  }
+  const ThresholdFit pad = fit_contact_threshold(camera, views, ring);
   require(!pad.ok() || (is_finite(pad.threshold_per_mm) && pad.threshold_per_mm > 0),
           "a threshold is above 0");
 }

@@ -479,7 +479,7 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
       Random random(6);
       OrthographicCamera<double> camera;
       camera.pitch_mm = 0.16;
-      FreePadCalibration<> calibration(camera, 60, 80, {8});
+      std::vector<Image<double>> frames;
       for (int t = 0; t < 4; ++t) {
         Image<double> depth(60, 80);
         for (Index i = 0; i < 60; ++i) {
@@ -490,9 +490,9 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
             depth(i, j) = static_cast<double>(i) < 60 * share_seen ? scale * l : test::nan;
           }
         }
-        calibration.add(depth);
+        frames.push_back(depth);
       }
-      return calibration.fit();
+      return fit_contact_threshold(camera, frames, {8});
     });
   };
 }

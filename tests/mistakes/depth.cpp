@@ -435,7 +435,7 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
         refusal([&] { const NeighbourLightCompensation<> r({5}, 0.1F, image); }),
         refusal([&] { const IntensityDepth<> r(image, {}); }),
         refusal([&] { const ContactByDifference<> r(std::array{image}); }),
-        refusal([&] { const FreePadCalibration<> r({}, rows, cols); }),
+        refusal([&] { (void)fit_contact_threshold(Camera<>{}, std::array{image}); }),
     };
   };
   const auto enormous = std::numeric_limits<Index>::max();

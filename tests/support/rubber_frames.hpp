@@ -81,11 +81,11 @@ inline Image<Point3<double>> jittered(Image<Point3<double>> dots, std::uint64_t 
 class RubberFrames {
  public:
   RubberFrames() {
-    fingerpad::FreePadCalibration<> calibration(pad().camera, pad().rows, pad().cols);
+    std::vector<Image<float>> free_mm;
     for (std::uint64_t seed = 901; seed <= 904; ++seed) {
-      calibration.add(estimate<float>(estimator_, scene_.frame(free_mm_, seed)).depth_mm);
+      free_mm.push_back(estimate<float>(estimator_, scene_.frame(free_mm_, seed)).depth_mm);
     }
-    test_.threshold_per_mm = calibration.fit().threshold_per_mm;
+    test_.threshold_per_mm = fit_contact_threshold(pad().camera, free_mm).threshold_per_mm;
   }
 
   fingerpad::PadHeights<>::Map heights(const std::string& shape, std::uint64_t seed) {

@@ -69,12 +69,7 @@ class ContactVariant {
   static double threshold(const CameraType& camera,
                           const std::vector<Image<float>>& free_mm,
                           const fingerpad::CurvatureRing& ring) {
-    fingerpad::FreePadCalibration<> calibration(camera, free_mm.front().rows(),
-                                                free_mm.front().cols(), ring);
-    for (const auto& depth : free_mm) {
-      calibration.add(depth);
-    }
-    return calibration.fit({.level_share = 0.5, .sigmas = 0, .quantile = 0.5}).threshold_per_mm;
+    return fit_contact_threshold(camera, free_mm, ring).median_per_mm / 2;
   }
 
   fingerpad::ContactRegion<> region_;

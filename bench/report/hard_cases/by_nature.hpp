@@ -99,7 +99,7 @@ RegionFound region_of(const Heights& height,
   return found;
 }
 
-/// Half of the curvature of a free pad of 20 mm, as FreePadCalibration sets it.
+/// Half of the curvature of a free pad of 20 mm, as fit_contact_threshold sets it.
 inline constexpr double half_of_free_per_mm = 0.025;
 
 inline RegionFound published_region(const Heights& height,

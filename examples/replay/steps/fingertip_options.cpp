@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/motion/spatial_dots.hpp"
@@ -25,10 +26,7 @@ Reference reference_of(const Recording& recording) {
 
 double threshold_of_shape(const Recording& recording) {
   const cv::Mat_<float>& shape_mm = recording.reference_depth;
-  fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, shape_mm.rows,
-                                              shape_mm.cols);
-  calibration.add(shape_mm);
-  return calibration.fit().threshold_per_mm;
+  return fit_contact_threshold(recording.sensor.camera, std::vector{shape_mm}).threshold_per_mm;
 }
 
 /// Converts thresholds in px from sensor.json to the noise from which they would follow. Without

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
@@ -63,12 +64,12 @@ cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& im
 
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
   const cv::Size size = recording.reference.size();
-  fingerpad::FreePadCalibration<> calibration(recording.sensor.camera, size.height, size.width);
+  std::vector<cv::Mat_<float>> depths_mm;
   recording.free_frames.seek(0);
   for (int frame = 0; frame < recording.free_frames.size(); ++frame) {
-    calibration.add(free_depth_of(options, next_frame(recording.free_frames, size)));
+    depths_mm.push_back(free_depth_of(options, next_frame(recording.free_frames, size)));
   }
-  return calibration.fit().threshold_per_mm;
+  return fit_contact_threshold(recording.sensor.camera, depths_mm).threshold_per_mm;
 }
 
 /// Columns of the border in order of their angle, which is the order of Fingertip's tensions.

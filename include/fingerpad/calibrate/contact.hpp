@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The threshold of the contact test, from frames of the free pad.
-// Source: the slides, consideration of calculation error: delta = min over the pad of E - 2 sigma,
-// where E is the statistic's mean over the frames and sigma its standard deviation.
-//
-// As published, the single worst pixel of the pad sets the threshold; here a quantile replaces the
-// minimum. E - 2 sigma is the highest threshold that noise allows. It is not the level at the edge
-// of the contact: at a straight edge this is half the level of the free pad, which is the default.
+// The threshold of the contact test, from frames of the free pad: half of the pad's own curvature,
+// the level at the edge of a contact (straight, whatever the radius of the ring), or less if the
+// noise demands it. Source: the slides, consideration of calculation error, delta = min over the
+// pad of E - 2 sigma, with the mean E of a pixel over the frames and its standard deviation sigma.
+// As published, the single worst pixel sets the threshold, and its sigma takes dozens of frames.
+// Here a quantile replaces the minimum and the sigma of the whole pad that of a pixel.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <type_traits>
 #include <vector>
 
@@ -19,184 +19,110 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// delta = min(level_share x median of E, quantile over the pad of E - sigmas x sigma).
-/// The sigma of a single pixel, as published, needs dozens of frames; that of the whole pad needs
-/// two.
-struct ThresholdRule {
-  double level_share = 0.5;  ///< in (0, 1]
-  double sigmas = 2;         ///< >= 0
-  double quantile = 0.001;   ///< in [0, 0.5]; share of the free pad that may be taken for contact
-  bool pooled_sigma = true;  ///< one sigma, the root mean square over the pad, for all pixels
-};
-
-/// Curvature of the free pad. All curvatures in 1/mm.
+/// The threshold and the curvature of the free pad, 1/mm.
 template <scalar S = double>
-struct [[nodiscard]] FreePadCurvature {
+struct [[nodiscard]] ThresholdFit {
   const char* cause = nullptr;  ///< likely mistake
-  S threshold_per_mm = S(0);    ///< delta, for ContactTest
+  S threshold_per_mm = S(0);    ///< for ContactTest, > 0
   S median_per_mm = S(0);       ///< of E over the pad
-  /// Standard error of the median, from the scatter of the frames' medians; NaN for a single frame.
-  /// Times level_share it is that of the threshold, if the level sets the threshold.
+  /// Standard error of the median, from the scatter of the frames' medians; half of it is that of a
+  /// threshold set by the level. NaN for a single frame.
   S median_error_per_mm = not_a_number<S>();
-  S noise_per_mm = S(0);   ///< root mean square of sigma over the pad; 0 for a single frame
-  S edge_noise_mm = S(0);  ///< standard deviation of an edge point of a flat object due to this
-                           ///< noise alone; smaller with a placed edge, which is smoothed
-  Index pixels = 0;        ///< with a curvature in every frame
-  int frames = 0;
+  S noise_per_mm = S(0);  ///< root mean square of sigma over the pad; 0 for a single frame
 
   bool ok() const { return cause == nullptr; }
 };
 
-/// Collects mean curvatures of the free pad. Ring and camera must be those of the contact test.
-/// Sums of float are double. Takes 32 bytes per pixel.
-template <scalar S = float>
-class FreePadCalibration {
-  using T = std::conditional_t<std::is_same_v<S, float>, double, S>;
+namespace detail {
 
- public:
-  /// Refuses bad parameters (parameter_error).
-  template <class CameraType = Camera<double>>
-  FreePadCalibration(const CameraType& camera,
-                     Index rows,
-                     Index cols,
-                     const CurvatureRing& ring = {})
-      : pixel_mm_(pitch_of(camera, rows, cols)),
-        ring_px_(T(ring.radius_px)),
-        map_(camera, rows, cols, ring),
-        curvature_(static_cast<std::size_t>(rows * cols)),
-        mean_(curvature_.size(), T(0)),
-        squares_(curvature_.size(), T(0)) {}
-
-  /// Adds the depth map of a frame, mm; false, and nothing changed, if it has another size.
-  template <grid Depth>
-  bool add(const Depth& depth_mm) {
-    const StridedView<S> curvature(curvature_.data(), map_.rows(), map_.cols(), map_.cols());
-    if (!map_(depth_mm, curvature).ok()) {
-      return false;
-    }
-    ++frames_;
-    of_frame_.clear();
-    for (std::size_t k = 0; k < mean_.size(); ++k) {
-      // a pixel without curvature in one frame remains NaN
-      const T here = T(curvature_[k]);
-      const T change = here - mean_[k];
-      mean_[k] += T(change / T(frames_));
-      squares_[k] += T(change * T(here - mean_[k]));
-      if (is_finite(mean_[k])) {
-        of_frame_.push_back(here);
-      }
-    }
-    if (!of_frame_.empty()) {
-      medians_.push_back(quantile(of_frame_, 0.5));
-    }
-    return true;
+/// Running mean and sum of squared deviations from it; NaN from the first NaN on.
+template <scalar S>
+struct Scatter {
+  S mean = S(0), squares = S(0);
+  void add(const S& x, const S& count) {
+    const S change = x - mean;
+    mean += change / count;
+    squares += change * (x - mean);
   }
-
-  /// Refuses a rule out of range, no frames, no pixel with a curvature in all frames, and a pad for
-  /// which the rule gives no positive threshold (parameter_error).
-  FreePadCurvature<T> fit(const ThresholdRule& rule = {}) const {
-    check(rule);
-    FreePadCurvature<T> pad;
-    pad.frames = frames_;
-    std::vector<T> means;
-    std::vector<T> sigmas;
-    T variance = T(0);
-    for (std::size_t k = 0; k < mean_.size(); ++k) {
-      if (is_finite(squares_[k])) {
-        const T of_pixel = frames_ > 1 ? T(squares_[k] / T(frames_ - 1)) : T(0);
-        means.push_back(mean_[k]);
-        sigmas.push_back(root_of(of_pixel));
-        variance += of_pixel;
-      }
-    }
-    pad.pixels = static_cast<Index>(means.size());
-    expects(frames_ > 0, "FreePadCalibration", "frames", static_cast<long long>(frames_), ">= 1");
-    expects(pad.pixels > 0, "FreePadCalibration", "pixels", static_cast<long long>(pad.pixels),
-            ">= 1 with a curvature in every frame");
-    pad.noise_per_mm = root_of(T(variance / T(static_cast<double>(pad.pixels))));
-    std::vector<T> lows = means;
-    for (std::size_t k = 0; k < lows.size(); ++k) {
-      lows[k] -= T(T(rule.sigmas) * (rule.pooled_sigma ? pad.noise_per_mm : sigmas[k]));
-    }
-    pad.median_per_mm = quantile(means, 0.5);
-    pad.median_error_per_mm = standard_error(medians_);
-    const T level = T(rule.level_share) * pad.median_per_mm;
-    const T low = quantile(lows, rule.quantile);
-    pad.threshold_per_mm = low < level ? low : level;
-    // the mean curvature across an edge rises by 4 / (pi r) of its jump per mm, see edge_level.hpp
-    pad.edge_noise_mm =
-        pad.noise_per_mm / pad.median_per_mm * T(0.785398163397448) * ring_px_ * pixel_mm_;
-    expects(T(0) < pad.threshold_per_mm, "FreePadCalibration", "threshold_per_mm",
-            pad.threshold_per_mm,
-            "> 0: the pad bulges too little for its noise; use a larger ring or "
-            "smooth the depth more");
-    if (pad.median_per_mm < T(1e-3)) {  // a sphere of 1 m radius: no pad is as flat
-      pad.cause = cause::depths_not_in_mm;
-    } else if (2 * means.size() < mean_.size()) {
-      pad.cause =
-          "fewer than half of the pixels have a depth: "
-          "check calibration, exposure and frame";
-    }
-    return pad;
-  }
-
- private:
-  template <class CameraType>
-  static T pitch_of(const CameraType& camera, Index rows, Index cols) {
-    expects_grid_size("FreePadCalibration", rows, cols);
-    require(camera);
-    return static_cast<T>(camera.pitch_mm);
-  }
-
-  static void check(const ThresholdRule& rule) {
-    expects(rule.level_share > 0 && rule.level_share <= 1, "ThresholdRule", "level_share",
-            rule.level_share, "in (0, 1]");
-    expects(is_finite(rule.sigmas) && rule.sigmas >= 0, "ThresholdRule", "sigmas", rule.sigmas,
-            "finite and >= 0");
-    expects(rule.quantile >= 0 && rule.quantile <= 0.5, "ThresholdRule", "quantile", rule.quantile,
-            "in [0, 0.5]");
-  }
-
-  static T quantile(std::vector<T>& values, double share) {
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
-  }
-
-  /// Standard error of the mean of independent values; NaN for a single value.
-  static T standard_error(const std::vector<T>& values) {
-    const T n = T(static_cast<double>(values.size()));
-    T mean = T(0), squares = T(0);
-    for (const T& x : values) {
-      mean += T(x / n);
-    }
-    for (const T& x : values) {
-      squares += square(T(x - mean));
-    }
-    return root_of(T(squares / T(n * T(n - T(1)))));
-  }
-
-  /// Square root; 0 at 0, without the infinite derivative.
-  static T root_of(const T& x) {
-    using std::sqrt;
-    return value(x) == 0 ? T(0) : T(sqrt(x));
-  }
-
-  T pixel_mm_;
-  T ring_px_;
-  CurvatureMap<S> map_;
-  std::vector<S> curvature_;
-  std::vector<T> mean_;     ///< E of each pixel
-  std::vector<T> squares_;  ///< sum of squared deviations from it
-  std::vector<T> of_frame_;
-  std::vector<T> medians_;  ///< of the frames
-  int frames_ = 0;
 };
+
+}  // namespace detail
+
+/// min(median / 2, quantile - 2 sigma) of the mean curvatures E, with the quantile 0.001: about
+/// that share of a free pad may be taken for contact. Takes a container of depth maps of the free
+/// pad in mm: one determines the level, two the noise. Camera and ring must be those of the contact
+/// test. Pixels without a curvature in a frame do not count. Refuses bad parameters, frames of
+/// several sizes, and a pad without a positive threshold (parameter_error). Not ok: a pad flatter
+/// than a sphere of 1 m, and one of which less than half is seen. For double, curvatures are float,
+/// as in the contact test. Allocates; O(frames rows cols directions).
+template <scalar S = double, class CameraType, class Frames>
+ThresholdFit<S> fit_contact_threshold(const CameraType& camera,
+                                      const Frames& free_mm,
+                                      const CurvatureRing& ring = {}) {
+  const char* const owner = "fit_contact_threshold";
+  expects(std::size(free_mm) > 0, owner, "number of frames", 0LL, ">= 1");
+  const auto first = as_view(*std::begin(free_mm));
+  const Index rows = first.rows(), cols = first.cols();
+  using Curvature = std::conditional_t<std::is_same_v<S, double>, float, S>;
+  CurvatureMap<Curvature> map(camera, rows, cols, ring);
+  std::vector<Curvature> curvature(static_cast<std::size_t>(rows * cols));
+  std::vector<S> known;
+  std::vector<detail::Scatter<S>> pixels(curvature.size());
+  detail::Scatter<S> median;
+  const auto quantile = [](std::vector<S>& of, double share) {
+    const auto at = of.begin() + static_cast<Index>(share * static_cast<double>(of.size() - 1));
+    std::nth_element(of.begin(), at, of.end());
+    return *at;
+  };
+  S count = S(0);  // of frames
+  for (const auto& depth_mm : free_mm) {
+    const bool fits =
+        map(depth_mm, StridedView<Curvature>(curvature.data(), rows, cols, cols)).ok();
+    expects(fits, owner, "rows of a frame", static_cast<long long>(as_view(depth_mm).rows()),
+            "of the same size as the first frame");
+    count += S(1);
+    known.clear();
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      pixels[k].add(S(curvature[k]), count);
+      if (is_finite(pixels[k].mean)) {
+        known.push_back(S(curvature[k]));
+      }
+    }
+    expects(!known.empty(), owner, "pixels", 0LL, ">= 1 with a curvature in every frame");
+    median.add(quantile(known, 0.5), count);
+  }
+  known.clear();
+  S squares = S(0);
+  for (const detail::Scatter<S>& pixel : pixels) {
+    if (is_finite(pixel.mean)) {
+      known.push_back(pixel.mean);
+      squares += pixel.squares;
+    }
+  }
+  ThresholdFit<S> fit;
+  if (S(1) < count) {
+    using std::sqrt;
+    const auto root = [](const S& x) { return S(0) < x ? sqrt(x) : S(0); };
+    fit.noise_per_mm = root(squares / (S(static_cast<double>(known.size())) * (count - S(1))));
+    fit.median_error_per_mm = root(median.squares / (count * (count - S(1))));
+  }
+  fit.median_per_mm = quantile(known, 0.5);
+  fit.threshold_per_mm =
+      (std::min)(fit.median_per_mm / S(2), quantile(known, 0.001) - S(2) * fit.noise_per_mm);
+  expects(
+      S(0) < fit.threshold_per_mm, owner, "threshold_per_mm", fit.threshold_per_mm,
+      "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");
+  if (fit.median_per_mm < S(1e-3)) {
+    fit.cause = cause::depths_not_in_mm;
+  } else if (2 * known.size() < pixels.size()) {
+    fit.cause = "fewer than half of the pixels have a depth: check calibration, exposure and frame";
+  }
+  return fit;
+}
 
 }  // namespace v0
 }  // namespace fingerpad

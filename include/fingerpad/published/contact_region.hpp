@@ -8,10 +8,11 @@
 // ones set to 0; and the slides' first test, every direction below delta_R. A level section has no
 // circle: its curvature is NaN and passes no test (E013). Heights are orthographic, as printed. The
 // mask is not cleaned. With noise the printed threshold misses half of a flat contact: E018. The
-// slides' rule for it is the minimum of E - 2 sigma over the pixels: ThresholdRule{1, 2, 0, false}
-// of calibrate/contact.hpp.
+// slides' rule for it is `threshold_by_slides`.
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -134,6 +135,30 @@ double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContact
     }
   }
   return touching_px * o.pitch_mm * o.pitch_mm;
+}
+
+/// delta of the slides, 1/mm: the least E - 2 sigma of the pixels, with the mean E and the standard
+/// deviation sigma of a pixel's curvature over frames of the free pad. `curvatures` is a container
+/// of at least 2 curvature maps of one size; pixels that are NaN in one do not count.
+template <class Frames>
+double threshold_by_slides(const Frames& curvatures) {
+  const auto first = as_view(*std::begin(curvatures));
+  const double n = static_cast<double>(std::size(curvatures));
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < first.rows(); ++i) {
+    for (Index j = 0; j < first.cols(); ++j) {
+      double mean = 0, squares = 0;
+      for (const auto& k : curvatures) {
+        mean += static_cast<double>(as_view(k)(i, j)) / n;
+      }
+      for (const auto& k : curvatures) {
+        squares += square(static_cast<double>(as_view(k)(i, j)) - mean);
+      }
+      const double low = mean - 2 * std::sqrt(squares / (n - 1));
+      least = low < least ? low : least;
+    }
+  }
+  return least;
 }
 
 }  // namespace published
