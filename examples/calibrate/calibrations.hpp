@@ -44,9 +44,8 @@ Outcome neighbour_light(const Path& recording, const Path& sensor, int max_radiu
 /// The contact threshold, from free/.
 Outcome contact(const Path& recording, const Path& sensor);
 
-/// Noise of the dots and thresholds of slip, from free/. With `slips` the displacement between two
-/// stick ratios is chosen from frames/, in which a contact first sticks and finally slips.
-Outcome dots(const Path& recording, bool slips);
+/// Noise of the dots and thresholds of slip, from free/.
+Outcome dots(const Path& recording);
 
 /// The rim, from side_dots.csv and signals.csv of the free pad at two or more pressures, or at one
 /// if the length is given.

@@ -63,7 +63,6 @@ struct Arguments {
   calibrate::DotPlate plate;
   calibrate::CapSize size;
   int max_radius_px = 50;
-  bool slips = false;
   calibrate::RimNoise rim;
   Path contacts, gauge, practice;
 };
@@ -115,13 +114,10 @@ void add_light(CLI::App& app, Common& common, Arguments& given, std::function<Ou
       [&] { return calibrate::contact(common.recording, common.sensor()); }, work);
 }
 
-void add_dots(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
-  auto* sub = add(
+void add_dots(CLI::App& app, Common& common, std::function<Outcome()>& work) {
+  add(
       app, common, "dots", "noise of the dots and thresholds of slip, from free/",
-      [&] { return calibrate::dots(common.recording, given.slips); }, work);
-  sub->add_flag(
-      "--slips", given.slips,
-      "also choose reference_px, from frames/ in which the object first sticks and then slips");
+      [&] { return calibrate::dots(common.recording); }, work);
 }
 
 void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
@@ -176,7 +172,7 @@ int main(int argc, char** argv) {
   std::function<Outcome()> work;
   add_geometry(app, common, given, work);
   add_light(app, common, given, work);
-  add_dots(app, common, given, work);
+  add_dots(app, common, work);
   add_forces(app, common, given, work);
   app.add_subcommand("practice",
                      "write recordings of a virtual sensor to try the calibrations with")

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Calibrates the noise of dots and taxels, and the resulting thresholds.
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
 #include "fingerpad/adapt/dot_finder.hpp"
-#include "fingerpad/calibrate/slip.hpp"
-#include "fingerpad/calibrate/slip_noise.hpp"
+#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/io/failure.hpp"
@@ -28,36 +30,17 @@ void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& 
   }
 }
 
-/// Chooses the largest displacement between stick ratios that the recording supports.
-fingerpad::StickTestFit choose(const fingerpad::DotFinder& finder,
-                               const Path& folder,
-                               const fingerpad::DotNoise<>& noise) {
-  // --slips requires an object larger than the print
-  fingerpad::StickTestCalibration<> calibration(finder.rows(), finder.cols(), noise,
-                                                {.covers_pattern = true});
-  follow(finder, folder, [&](const cv::Mat_<cv::Vec2d>& dots) {
-    cv::Mat_<unsigned char> found(dots.size());
-    for (int i = 0; i < dots.rows; ++i) {
-      for (int j = 0; j < dots.cols; ++j) {
-        found(i, j) = std::isfinite(dots(i, j)[0]) ? 255 : 0;
-      }
-    }
-    (void)calibration.add(dots, found);
-  });
-  return calibration.fit();
-}
-
 }  // namespace
 
-Outcome dots(const Path& recording, bool slips) {
+Outcome dots(const Path& recording) {
   const fingerpad::DotFinder finder(read_pictures(recording / "free").front());
   if (!finder.ok()) {
     replay::fail(recording / "free", "the first image shows no grid of 9 or more dots");
   }
-  fingerpad::DotNoiseCalibration calibration(finder.rows(), finder.cols());
+  std::vector<cv::Mat_<cv::Vec2d>> frames;
   Plot plot{"frame", "mean distance from frame 0 [px]", {}};
   follow(finder, recording / "free", [&](const cv::Mat_<cv::Vec2d>& dots) {
-    (void)calibration.add(dots);
+    frames.push_back(dots.clone());
     double sum = 0;
     int count = 0;
     for (int i = 0; i < dots.rows; ++i) {
@@ -70,29 +53,31 @@ Outcome dots(const Path& recording, bool slips) {
     }
     plot.points.push_back({static_cast<double>(plot.points.size()), sum / count, 0});
   });
-  const auto noise = calibration.fit();
+  const auto noise = fingerpad::dot_noise(frames);
   // with independent noise in two pictures the mean distance is sqrt(pi) sigma
   for (PlotPoint& point : plot.points) {
     point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise.noise_px : 0;
   }
-  fingerpad::StickTest test = stick_test_for(finder.rows() * finder.cols(), noise);
+  // a dot at the edge of the contact is averaged with three side and two diagonal neighbours
+  const double edge_px = std::sqrt(50.0) / 14 * noise.noise_px;
+  const double slip_px = fingerpad::slip_threshold_for(edge_px, 0.02);
+  // one frame at rest in a hundred has a dot that moves further
+  const double dots = static_cast<double>(noise.dots);
+  const double store_px = fingerpad::slip_threshold_for(noise.noise_px, 0.01 / dots);
+  // slip_px is at most 0.12 of the displacement, as published
+  const double reference_px = (std::max)({2.0, slip_px / 0.12, store_px});
   Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
   report.doubt(!noise.ok(), text_of(noise));
-  report.doubt(noise.frames < 5, "four frames are too few to estimate the noise: record twenty");
-  if (slips) {
-    const auto fit = choose(finder, recording / "frames", noise);
-    test = fit.test;
-    report.doubt(!fit.ok(), text_of(fit));
-  }
+  report.doubt(frames.size() < 5, "four frames are too few to estimate the noise: record twenty");
   const double relative = noise.noise_error_px / noise.noise_px;
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
-                       {"slip_px", test.slip, test.slip * noise.edge_error_px / noise.edge_px},
-                       {"store_px", test.store, test.store * relative},
-                       {"reference_px", test.reference},
-                       {"dots", static_cast<double>(noise.dots)}};
+                       {"slip_px", slip_px, slip_px * relative},
+                       {"store_px", store_px, store_px * relative},
+                       {"reference_px", reference_px},
+                       {"dots", dots}};
   Outcome outcome;
   outcome.sections["stick"] = {
-      {"reference_px", test.reference}, {"store_px", test.store}, {"slip_px", test.slip}};
+      {"reference_px", reference_px}, {"store_px", store_px}, {"slip_px", slip_px}};
   outcome.reports = {report};
   outcome.plots = {plot};
   return outcome;

@@ -62,12 +62,11 @@ inline const auto draw_samples = [](const auto& data, Chance& chance) {
   return chance.drawn_from(data);
 };
 
-/// Trials defined in trials_of_shape.cpp and trials_of_slip.cpp.
+/// Trials defined in trials_of_shape.cpp and trials_of_preslip.cpp.
 Trial camera_plate();
 Trial cap();
 Trial rubber();
 Trial intensity();
-Trial stick_test();
 Trial preslip();
 
 }  // namespace replay_many

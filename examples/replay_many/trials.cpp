@@ -13,10 +13,10 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_divergence.hpp"
+#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/slip_noise.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/normal_force.hpp"
@@ -169,12 +169,8 @@ Trial dots() {
     }
     return frames;
   };
-  const auto fit = [=](const std::vector<Frame>& frames) {
-    fingerpad::DotNoiseCalibration calibration(rows, cols);
-    for (const Frame& frame : frames) {
-      (void)calibration.add(frame);
-    }
-    const auto noise = calibration.fit();
+  const auto fit = [](const std::vector<Frame>& frames) {
+    const auto noise = fingerpad::dot_noise(frames);
     return Estimate{{noise.noise_px}, diagonal({noise.noise_error_px})};
   };
   return trial({"noise_px"}, {noise_px}, 1, measure, draw_samples, fit);
@@ -472,7 +468,6 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"camera_plate", camera_plate},
       {"cap", cap},
       {"intensity", intensity},
-      {"stick_test", stick_test},
       {"preslip", preslip},
       {"power_law", power_law},
       {"divergence", divergence},

@@ -4,11 +4,11 @@
 // Everything but the adapters, which bring their libraries with them (see adapt/). What needs Eigen
 // is here where Eigen is found: the six-axis force, the whole fingertip, fits of light and forces.
 #include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/preslip.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/slip.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"

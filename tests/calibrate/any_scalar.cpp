@@ -13,10 +13,10 @@
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/dot_divergence.hpp"
+#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/preslip.hpp"
-#include "fingerpad/calibrate/slip.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -96,7 +96,7 @@ struct DotNoiseByScale {
   template <class S>
   Results<S> operator()(const S& p) const {
     Random random(3);
-    DotNoiseCalibration<S> calibration(7, 7);
+    std::vector<Image<Point2<S>>> frames;
     for (int k = 0; k < 12; ++k) {
       Image<Point2<S>> dots(7, 7, {S(0), S(0)});
       for (Index i = 0; i < 7; ++i) {
@@ -106,12 +106,10 @@ struct DotNoiseByScale {
           dots(i, j) = k == 4 ? Point2<S>{S(p * x), S(p * y)} : Point2<S>{x, y};
         }
       }
-      REQUIRE(calibration.add(dots));
+      frames.push_back(dots);
     }
-    const DotNoise<S> noise = calibration.fit();
-    // thresholds are plain numbers that only decide
-    CHECK(stick_test_for(49, noise).slip == Approx(stick_test_for(49, calibration.fit()).slip));
-    return {noise.noise_px, noise.largest_px, noise.inner_px, noise.edge_px, noise.published_px};
+    const auto noise = dot_noise<S>(frames);
+    return {noise.noise_px, noise.slow_share, slip_threshold_for(noise.noise_px, S(0.02))};
   }
 };
 
@@ -194,37 +192,6 @@ struct PreslipThresholds {
   }
 };
 
-/// U of the stick ratio, which comes from a list: a patch is dragged while its dots begin to slip
-/// from the edge.
-struct ReferenceOfSlip {
-  template <class S>
-  Results<S> operator()(const S& p) const {
-    Random random(9);
-    StickTestCalibration<StickConsensus<>, UpdatedReference, ResidualMean, S> calibration(
-        15, 15, independent_dot_noise<S>(S(0.05) * p), {.candidates = 5});
-    const auto from = [](Index i, Index j) {
-      return std::hypot(static_cast<double>(i) - 7.3, static_cast<double>(j) - 6.8);
-    };
-    const auto contact = map_of<char>(
-        15, 15, [&](Index i, Index j) { return static_cast<char>(from(i, j) < 5.8 ? 1 : 0); });
-    Image<double> moved(15, 15, 0.0);
-    for (int t = 0; t < 90; ++t) {
-      const double radius = 6.5 - 0.055 * t;
-      Image<Point2<S>> dots(15, 15, {S(0), S(0)});
-      for (Index i = 0; i < 15; ++i) {
-        for (Index j = 0; j < 15; ++j) {
-          moved(i, j) += 0.5 - 0.5 * std::clamp((from(i, j) - radius) / 1.5, 0.0, 0.9);
-          dots(i, j) = {S(20 * static_cast<double>(j) + moved(i, j) + 0.05 * random.normal()),
-                        S(20 * static_cast<double>(i) + 0.05 * random.normal())};
-        }
-      }
-      REQUIRE(calibration.add(dots, contact));
-    }
-    const StickTestFit fit = calibration.fit();
-    return {S(fit.test.reference), S(static_cast<double>(fit.steps))};
-  }
-};
-
 /// Largest relative difference of two lists.
 template <class A, class B>
 double furthest(const Results<A>& a, const Results<B>& b) {
@@ -267,5 +234,4 @@ TEST_CASE("calibrations: in float, and with derivatives") {
   check("free pad", FreePadByPitch(), 2e-2);
   check("divergence of dots", DivergenceByForce(), 1e-3);
   check("pre-slip", PreslipThresholds(), 1e-6, false);
-  check("stick test", ReferenceOfSlip(), 1e-6, false);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Mistakes in the recordings for the calibration of light, of thresholds of the stick ratio and of
+// Mistakes in the recordings for the calibration of light and of
 // pre-slip, and of the grid of printed dots, and the response to each: a status, the message of a
 // refusal, "right", or "wrong". docs/mistakes.md has the reason of each "wrong".
 #include <algorithm>
@@ -19,7 +19,6 @@
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/preslip.hpp"
-#include "fingerpad/calibrate/slip.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
 #include "support/pad.hpp"
@@ -238,63 +237,6 @@ std::function<void(Hand&)> each_sample(const std::function<void(Fingers&, std::s
       change(hand.fingers[k], k);
     }
   };
-}
-
-// ---- thresholds of the stick ratio
-
-/// An object drags a membrane along while its stick disc shrinks, with 0.06 px of noise.
-struct Drag {
-  static constexpr Index across = 15;
-  std::vector<test::PointsPx> dots;
-  test::ContactFlags contact{across, across};
-  DotNoise<> noise = independent_dot_noise(0.06);
-
-  Drag() {
-    Random random(3);
-    test::SlippingDots truth({.rows = across, .cols = across, .contact_pitches = 5});
-    contact = truth.contact;
-    for (int k = 0; k < 100; ++k) {
-      truth.step({.shift_px = 0.5, .direction_rad = 0.3, .stick_share = 1.3 - 0.012 * k});
-      test::PointsPx seen = truth.dots;
-      for (auto& p : seen.cells) {
-        p = {p.x + 0.06 * random.normal(), p.y + 0.06 * random.normal()};
-      }
-      dots.push_back(seen);
-    }
-  }
-};
-
-std::string said_of_thresholds(const Drag& drag) {
-  StickTestCalibration<> calibration(Drag::across, Drag::across, drag.noise);
-  for (const auto& dots : drag.dots) {
-    if (!calibration.add(dots, drag.contact)) {
-      return "refused";
-    }
-  }
-  const StickTestFit fit = calibration.fit();
-  const double u = fit.test.reference;
-  return !fit.ok() ? text_of(fit) : u > 0.7 && u < 3 ? "right" : "wrong";
-}
-
-std::function<void(Drag&)> renamed(const std::function<DotIndex(Index i, Index j, int k)>& from) {
-  return [=](Drag& drag) {
-    for (std::size_t k = 0; k < drag.dots.size(); ++k) {
-      const test::PointsPx as_they_were = drag.dots[k];
-      for (Index i = 0; i < Drag::across; ++i) {
-        for (Index j = 0; j < Drag::across; ++j) {
-          const DotIndex at = from(i, j, static_cast<int>(k));
-          drag.dots[k](i, j) = as_they_were(at.row % Drag::across, at.col % Drag::across);
-        }
-      }
-    }
-  };
-}
-void scale(Drag& drag, double factor) {
-  for (auto& dots : drag.dots) {
-    for (auto& p : dots.cells) {
-      p = factor * p;
-    }
-  }
 }
 
 // ---- the grid of dots
@@ -538,93 +480,6 @@ TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
        "no threshold separates the onsets"},
   };
   check(mistakes, said_of_preslip);
-}
-
-TEST_CASE("mistakes: thresholds of the stick ratio", "[mistakes]") {
-  const Mistake<Drag> mistakes[] = {
-      {"none", [](Drag&) {}, "right"},
-      {"dots in mm, noise in px", [](Drag& d) { scale(d, 0.06); },
-       "frames with contact and motion"},
-      {"dots in m, noise in px", [](Drag& d) { scale(d, 6e-5); }, "the dots did not move"},
-      {"dots times 1000", [](Drag& d) { scale(d, 1e3); }, "the dots did not move"},
-      {"all in mm",
-       [](Drag& d) {
-         scale(d, 0.06);
-         d.noise = independent_dot_noise(0.0036);
-       },
-       "an end of the search"},
-      {"all times 1000",
-       [](Drag& d) {
-         scale(d, 1e3);
-         d.noise = independent_dot_noise(60);
-       },
-       "which noise sets"},
-      {"noise in thousandths", [](Drag& d) { d.noise = independent_dot_noise(6e-5); },
-       "must begin with sticking"},
-      {"noise times 1000", [](Drag& d) { d.noise = independent_dot_noise(60); },
-       "which noise sets"},
-      {"no noise", [](Drag& d) { d.noise = independent_dot_noise(0); }, "noise of a dot = 0"},
-      {"column by column", renamed([](Index i, Index j, int) {
-         return DotIndex{j, i};
-       }),
-       "right"},
-      {"column by column from frame 50 on", renamed([](Index i, Index j, int k) {
-         return k < 50 ? DotIndex{i, j} : DotIndex{j, i};
-       }),
-       "must end with slip"},
-      {"shifted by one from frame 50 on", renamed([](Index i, Index j, int k) {
-         return DotIndex{i, k < 50 ? j : j + 1};
-       }),
-       "right"},
-      {"other names in each frame", renamed([](Index i, Index j, int k) {
-         return DotIndex{(i * 7 + k) % 15, (j * 4 + 3 * k) % 15};
-       }),
-       "the dots did not move"},
-      {"frozen", [](Drag& d) { std::fill(d.dots.begin(), d.dots.end(), d.dots[0]); },
-       "frames with contact and motion = 1"},
-      {"frozen from frame 50 on",
-       [](Drag& d) { std::fill(d.dots.begin() + 50, d.dots.end(), d.dots[50]); },
-       "must end with slip"},
-      {"half lost",
-       [](Drag& d) {
-         for (auto& dots : d.dots) {
-           std::fill(dots.cells.begin(), dots.cells.begin() + 112,
-                     Point2<double>{test::nan, test::nan});
-         }
-       },
-       "right"},
-      {"backwards", [](Drag& d) { std::reverse(d.dots.begin(), d.dots.end()); }, "right"},
-      {"contact reversed",
-       [](Drag& d) {
-         for (auto& c : d.contact.cells) {
-           c = c ? 0 : 1;
-         }
-       },
-       "must begin with sticking"},
-      {"all in contact",
-       [](Drag& d) {
-         for (auto& c : d.contact.cells) {
-           c = 1;
-         }
-       },
-       "updated answers = 0"},
-      {"none in contact",
-       [](Drag& d) {
-         for (auto& c : d.contact.cells) {
-           c = 0;
-         }
-       },
-       "frames with contact and motion = 0"},
-      {"every second frame exchanged",
-       [](Drag& d) {
-         for (std::size_t k = 0; k + 1 < d.dots.size(); k += 2) {
-           std::swap(d.dots[k], d.dots[k + 1]);
-         }
-       },
-       "right"},
-      {"all sticks", [](Drag& d) { d.dots.resize(40); }, "must end with slip"},
-  };
-  check(mistakes, said_of_thresholds);
 }
 
 TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "fingerpad/calibrate/slip_noise.hpp"
+#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/published/object_motion.hpp"
@@ -393,7 +393,9 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
         refusal([&] { const Recoil<> r(px); }),
         refusal([&] { const ContactSlide<> r(rows, cols, 9, 9); }),
         refusal([&] { const ContactSlide<> r(60, 80, rows, cols); }),
-        refusal([&] { const DotNoiseCalibration r(rows, cols); }),
+        refusal([&] {
+          (void)dot_noise(std::array{px, px});
+        }),
         refusal([&] { const published::SlidesStickRatio r(rows, cols); }),
     };
   };

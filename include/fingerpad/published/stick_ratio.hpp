@@ -45,21 +45,6 @@ inline void expects_valid(const DotMean& mean) {
   fingerpad::expects_valid(mean.weights, "DotMean");
 }
 
-/// Noise terms for calibrate/slip.hpp. Dots at the edge of the pattern are not averaged, and the
-/// single reference dot has as much noise as the dot that is judged.
-template <class Noise>
-auto compared_noise_px(const DotMean&, const Noise& noise) {
-  return noise.inner_px;
-}
-template <class Noise>
-auto placed_noise_px(const DotMean&, const Noise& noise) {
-  return noise.inner_px;
-}
-template <Freedom Free>
-double motion_noise_factor(const ReferenceDotMotion<Free>&) {
-  return 1.4142135623730951;
-}
-
 // Quality of a sequence of stick ratios. Source: "Two measures for U" of 003:
 //   S = sum of phi_i                              smaller the earlier the ratio falls
 //   D = sum of phi_(i-1) - phi_i over its falls   "regarded as the level of estimation error"
