@@ -44,7 +44,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor, int max_radiu
 /// The contact threshold, from free/.
 Outcome contact(const Path& recording, const Path& sensor);
 
-/// Noise of the dots and thresholds of slip, from free/.
+/// Noise of the dots, from free/, and the thresholds of slip that follow from it, to read.
 Outcome dots(const Path& recording);
 
 /// The rim, from side_dots.csv and signals.csv of the free pad at two or more pressures, or at one

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Calibrates the noise of dots and taxels, and the resulting thresholds.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -64,8 +63,6 @@ Outcome dots(const Path& recording) {
   // one frame at rest in a hundred has a dot that moves further
   const double dots = static_cast<double>(noise.dots);
   const double store_px = fingerpad::slip_threshold_for(noise.noise_px, 0.01 / dots);
-  // slip_px is at most 0.12 of the displacement, as published
-  const double reference_px = (std::max)({2.0, slip_px / 0.12, store_px});
   Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
   report.doubt(!noise.ok(), text_of(noise));
   report.doubt(frames.size() < 5, "four frames are too few to estimate the noise: record twenty");
@@ -73,11 +70,8 @@ Outcome dots(const Path& recording) {
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
                        {"slip_px", slip_px, slip_px * relative},
                        {"store_px", store_px, store_px * relative},
-                       {"reference_px", reference_px},
                        {"dots", dots}};
   Outcome outcome;
-  outcome.sections["stick"] = {
-      {"reference_px", reference_px}, {"store_px", store_px}, {"slip_px", slip_px}};
   outcome.reports = {report};
   outcome.plots = {plot};
   return outcome;
