@@ -5,7 +5,7 @@
 // are dragged, rotated and pressed, one by one and at once (tests/support/slipping_dots.hpp), with
 // 0.14 px of noise. A frame without an answer (at rest, or moved too little) has no error.
 // "On scenes": the same noise on dots of finite-element membranes.
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene_stick.hpp"
-#include "fingerpad/published/slides_stick_ratio.hpp"
+#include "support/published_stick.hpp"
 #include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
@@ -87,7 +87,7 @@ std::vector<double> errors_of(const Ratio& ratio) {
   test::DotStates states(ratio.rows(), ratio.cols());
   for (const KnownFrame& frame : known_frames(ratio.rows())) {
     if (frame.begins) {
-      state.reset();
+      state = ratio.start();
     }
     const auto r = ratio(frame.seen, frame.truth.contact, states, state);
     errors.push_back(r.updated() ? static_cast<double>(r.stick_ratio) -
@@ -135,37 +135,24 @@ void add_frame(const std::string& name) {
   add<StickRatio<Motion, Reference, Denoising, S>>("frame of 21x21 dots/" + name, recording());
 }
 
-std::vector<double> naive_errors() {
-  const published::SlidesStickRatio ratio(21, 21);
-  auto state = ratio.start();
-  std::vector<double> errors;
-  for (const KnownFrame& frame : known_frames(21)) {
-    if (frame.begins) {
-      state = ratio.start();
-    }
-    const auto r = ratio(frame.seen, frame.truth.contact, state);
-    errors.push_back(r.updated ? r.stick_ratio - frame.truth.stick_ratio(r.reference_age)
-                               : test::nan);
-  }
-  return errors;
-}
-
-void add_naive() {
+/// The printed method.
+void add_printed(const char* name, const published::StickRatioOptions& options) {
   struct Running {
-    published::SlidesStickRatio ratio{21, 21};
-    published::SlidesStickRatio::State state = ratio.start();
+    test::PublishedStick::State state;
     std::size_t k = 0;
   };
   const bench::Memory memory;
-  const auto d = std::make_shared<Running>();
+  const auto d = std::make_shared<Running>(Running{{21, 21, options}});
+  const test::PublishedStick ratio{d->state};
   bench::add(
-      "frame of 21x21 dots/naive: the slides in double, every stored frame", 1, memory.bytes(),
+      std::string("frame of 21x21 dots/") + name, 1, memory.bytes(),
       [d] {
         d->k = d->k + 1 < recording().frames.size() ? d->k + 1 : 0;
-        benchmark::DoNotOptimize(d->ratio(recording().frames[d->k], recording().contact, d->state));
+        benchmark::DoNotOptimize(d->state(recording().frames[d->k], recording().contact));
       },
-      [errors = std::vector<double>()](auto& counters) mutable {
-        errors = errors.empty() ? naive_errors() : errors;
+      [ratio, errors = std::vector<double>()](auto& counters) mutable {
+        bench::note_stick_on_scenes(counters, ratio, noise_px);
+        errors = errors.empty() ? errors_of(ratio) : errors;
         note_ratio(counters, errors);
       });
 }
@@ -213,21 +200,17 @@ void add_growth() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  add_naive();
-  using Published = published::ReferenceDotMotion<>;
   using Updated = UpdatedReference;
-  using published::DotMean;
-  add_frame<Published, Updated, DotMean, double>("published policies, double");
-  add_frame<Published, Updated, DotMean>("published policies, float");
-  add_frame<Published>("published::ReferenceDotMotion, ResidualMean");
+  add_printed("published: StickRatio", {});
+  add_printed("published: the first reference stays", {.updates = false});
+  add_printed("published: without denoising", {.S2 = 0, .S3 = 0});
+  add_printed("published: the conventional method", published::conventional_stick_ratio);
   add_frame<StickConsensus<>>("StickConsensus, ResidualMean, float, the default");
   add_frame<StickConsensus<>, Updated, ResidualMean, double>("the default in double");
-  add_frame<StickConsensus<>, Updated, DotMean>("StickConsensus, published::DotMean");
   add_frame<StickConsensus<>, Updated, NoDenoising>("without denoising");
   add_frame<StickConsensus<Freedom::rigid>>("without scale");
   add_frame<StickConsensus<Freedom::scaling>>("without rotation");
   add_frame<StickConsensus<Freedom::translation>>("without rotation and scale");
-  add_frame<StickConsensus<>, published::FirstReference>("published::FirstReference");
   add_opencv();
   bench::add_streaming("frame of 21x21 dots");
   add_growth();

@@ -8,7 +8,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "replay/dots/dots.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/median.hpp"
@@ -140,7 +140,7 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
   try {
     const Followed followed = follow(file);
     const std::vector<DotGrid>& frames = followed.dots;
-    fingerpad::StickTest test = fingerpad::published::stick_test_px;
+    fingerpad::StickTest test{.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
     test.covers_pattern = true;  // unknown, so every dot counts as in contact
     view.ratio = ratios(frames, {.covers_pattern = true});
     test.slip = (std::max)(test.slip, slip_px_of(noise_px(frames)));

@@ -9,7 +9,6 @@
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
-#include "fingerpad/published/slides_stick_ratio.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fuzz/dots.hpp"
 
@@ -77,48 +76,33 @@ void try_contact(Input& in) {
   require(is_finite(area_mm2) && area_mm2 >= 0, "an area is finite and not negative");
 }
 
-template <class Estimator, class Look>
-void try_ratio(Input& in, const Estimator& estimate, Index rows, Index cols, const Look& look) {
-  auto state = estimate.start();
+void try_stick_ratio(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  published::StickRatioOptions options;
+  options.U = in.number(0, 5);
+  options.U_min = in.number(0, 2);
+  options.delta_0 = in.number(0.01, 1);
+  options.S2 = in.number(0, 3);
+  options.updates = in.flag();
+  options.cancels_rotation = in.flag();
+  options.wraps = in.flag();
+  options.scale = static_cast<published::StickScale>(in.whole(0, 2));
+  options.delta_grows = in.flag();
+  options.follows_stick = in.flag();
+  options.moves_with_stick = in.flag();
+  options.capacity = in.whole(0, 8);
+  published::StickRatio<> estimate(rows, cols, options);
   for (Index frames = in.whole(1, 6); frames > 0; --frames) {
     const auto dots = any_dots<Point2<double>>(in, rows, cols);
     const auto contact = any_contact(in, rows, cols);
-    auto copy = state;
-    const double ratio = fuzz::frame([&] { return look(dots.view(), contact.view(), state); });
-    require(!is_finite(ratio) || (ratio >= 0 && ratio <= 1), "a ratio is in [0, 1]");
-    require(fuzz::same_bits(ratio, look(dots.view(), contact.view(), copy)),
-            "a copied state gives the same bits");
-  }
-}
-
-void try_slides(Input& in) {
-  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
-  published::SlidesOptions options;
-  options.test.reference = in.number(0.1, 5);
-  options.test.store = in.number(0, 2);
-  options.test.slip = in.number(0.01, 1);
-  options.cancels_rotation = in.flag();
-  options.reference = static_cast<published::SlidesReference>(in.whole(0, 1));
-  options.scale = static_cast<published::SlidesScale>(in.whole(0, 1));
-  options.delta = static_cast<published::SlidesDelta>(in.whole(0, 1));
-  options.answers = static_cast<published::AnswerWhen>(in.whole(0, 1));
-  options.capacity = in.whole(0, 8);
-  const published::SlidesStickRatio estimate(rows, cols, options);
-  try_ratio(in, estimate, rows, cols, [&](const auto& dots, const auto& contact, auto& state) {
-    const auto seen = estimate(dots, contact, state);
+    auto copy = estimate;
+    const auto seen = fuzz::frame([&] { return estimate(dots.view(), contact.view()); });
+    require(seen.stick_ratio >= 0 && seen.stick_ratio <= 1, "a ratio is in [0, 1]");
     require(!seen.ok() || (is_finite(seen.angle_rad) && is_finite(seen.furthest_px)),
             "the values of an ok result are finite");
-    return seen.stick_ratio;
-  });
-}
-
-void try_stick_ratio(Input& in) {
-  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
-  const auto estimate = published::stick_ratio(rows, cols);
-  Grid<DotState> states(rows, cols);
-  try_ratio(in, estimate, rows, cols, [&](const auto& dots, const auto& contact, auto& state) {
-    return static_cast<double>(estimate(dots, contact, states.view(), state).stick_ratio);
-  });
+    require(fuzz::same_bits(seen.stick_ratio, copy(dots.view(), contact.view()).stick_ratio),
+            "a copy gives the same bits");
+  }
 }
 
 void try_motion(Input& in) {
@@ -179,18 +163,16 @@ void try_preslip(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    switch (in.whole(0, 6)) {
+    switch (in.whole(0, 5)) {
       case 0:
         return try_depth(in);
       case 1:
         return try_contact(in);
       case 2:
-        return try_slides(in);
-      case 3:
         return try_stick_ratio(in);
-      case 4:
+      case 3:
         return try_motion(in);
-      case 5:
+      case 4:
         return try_friction(in);
       default:
         return try_preslip(in);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratios against 50 digits, derivatives, angles at the cut, and poorly determined motions.
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,7 +41,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A motion and its published form, in any number.
+/// In any number.
 template <class Motion_, class Denoising_>
 struct Of {
   using Motion = Motion_;
@@ -53,8 +53,6 @@ struct Of {
   }
 };
 using Default = Of<StickConsensus<>, ResidualMean>;
-using OneDot = Of<published::ReferenceDotMotion<>, ResidualMean>;
-using Published = Of<published::ReferenceDotMotion<>, published::DotMean>;
 
 /// Frames with positions that float holds exactly.
 std::vector<PointsPx> frames(std::uint64_t seed, const SlippingPattern& pattern) {
@@ -113,7 +111,7 @@ StickRatioResult<S> between(const PointsPx& before,
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default, OneDot, Published) {
+TEMPLATE_TEST_CASE("stick ratios follow 50 digits", "[stick_ratio]", Default) {
   // Dots that are not within rounding of the threshold have the same state. Positions of some
   // hundred px have an error of 3e-5 px in float; the threshold is at least 0.2 px.
   const SlippingPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
@@ -221,9 +219,7 @@ TEST_CASE("stick ratios by another formula: what sticks is what one similarity f
 
 TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences",
                    "[stick_ratio]",
-                   Default,
-                   OneDot,
-                   Published) {
+                   Default) {
   const SlippingPattern pattern{.rows = 9, .cols = 9, .contact_pitches = 4.2};
   const ContactFlags contact = SlippingDots(pattern).contact;
   SlippingDots truth(pattern);
@@ -262,8 +258,7 @@ TEMPLATE_TEST_CASE("derivatives of the object's motion are those of differences"
   }
 }
 
-TEMPLATE_TEST_CASE(
-    "angles near half a turn do not wrap", "[stick_ratio]", Default, OneDot, Published) {
+TEMPLATE_TEST_CASE("angles near half a turn do not wrap", "[stick_ratio]", Default) {
   const SlippingPattern pattern{.rows = 11, .cols = 11, .contact_pitches = 5.2};
   for (const double angle : {pi - 1e-6, pi - 0.01, -pi + 1e-6, -pi + 0.01, 3.0, -3.0, pi / 2}) {
     SlippingDots truth(pattern);
@@ -283,33 +278,24 @@ TEMPLATE_TEST_CASE(
 }
 
 TEST_CASE("a plain press has its scale", "[stick_ratio]") {
-  // There is no common motion: q = 0 at the middle. The published form uses the part across the
-  // motion of each pair, which a press has all around the middle; without any motion it has no
-  // scale.
+  // There is no common motion.
   SlippingDots truth;
   const PointsPx before = truth.dots;
   truth.step({.zoom = 1.05});
-  for (const auto& r : {between<Default>(before, truth.dots, truth.contact),
-                        between<OneDot>(before, truth.dots, truth.contact),
-                        between<Published>(before, truth.dots, truth.contact)}) {
-    REQUIRE(r.updated());
-    CHECK(r.stick_ratio == 1);
-    CHECK(r.scale == Approx(1 / 1.05).margin(2e-3));
-    CHECK(std::abs(r.angle_rad) < 1e-12);
-  }
+  const auto r = between<Default>(before, truth.dots, truth.contact);
+  REQUIRE(r.updated());
+  CHECK(r.stick_ratio == 1);
+  CHECK(r.scale == Approx(1 / 1.05).margin(2e-3));
+  CHECK(std::abs(r.angle_rad) < 1e-12);
   // An implausible scale is ignored.
   SlippingDots far;
   far.step({.shift_px = 1, .zoom = 1.3});
   CHECK(between<Default>(before, far.dots, far.contact).scale == 1);
-  CHECK(between<OneDot>(before, far.dots, far.contact).scale == 1);
-  CHECK(between<Published>(before, far.dots, far.contact).scale == 1);
 }
 
 TEMPLATE_TEST_CASE("dots on a line, and displacements that are all parallel",
                    "[stick_ratio]",
-                   Default,
-                   OneDot,
-                   Published) {
+                   Default) {
   for (const bool upright : {false, true}) {
     const Index rows = upright ? 15 : 1, cols = upright ? 1 : 15;
     const SlippingPattern pattern{.rows = rows, .cols = cols, .contact_pitches = 20};

@@ -17,7 +17,6 @@
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/published/object_motion.hpp"
-#include "fingerpad/published/slides_stick_ratio.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/recoil.hpp"
@@ -353,11 +352,6 @@ TEST_CASE("mistakes with printed dots", "[mistakes]") {
         said_by_slide(mistake),
     };
     CHECK(said == mistake.said);
-    // the published form takes every unit for px
-    const bool other_unit =
-        mistake.said.spatial == "wrong scale" || mistake.name == std::string("dots times 1000");
-    CHECK(said_by_stick(published::stick_ratio<double>(across, across), mistake, as_they_are) ==
-          (other_unit ? "wrong scale" : mistake.said.stick));
   }
 }
 
@@ -396,7 +390,7 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
         refusal([&] {
           (void)dot_noise(std::array{px, px});
         }),
-        refusal([&] { const published::SlidesStickRatio r(rows, cols); }),
+        refusal([&] { const published::StickRatio<> r(rows, cols); }),
     };
   };
   constexpr Index enormous = std::numeric_limits<Index>::max();
@@ -463,7 +457,4 @@ TEST_CASE("mistakes with printed dots: all are said to touch", "[mistakes]") {
         "false slip");
   CHECK(said_of_gel(SpatialStickRatio<>(rows, cols, {.covers_pattern = true}), true, in_space) ==
         "false slip");
-  // by the motion of one dot and its neighbours: noise alone makes dots slip, whatever touches
-  CHECK(said_of_gel(published::stick_ratio<double>(rows, cols), true, as_they_are) ==
-        "no outline of the contact");
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Properties for every motion, every slip and every policy.
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,8 +97,6 @@ struct Policies {
     return Ratio(r.rows(), r.cols(), test);
   }
 };
-using PublishedPolicies =
-    Policies<published::ReferenceDotMotion<>, UpdatedReference, published::DotMean>;
 
 bool near(double a, double b, double margin = 1e-9) {
   return test::same_bits(a, b) || std::abs(a - b) <= margin * std::max(1.0, std::abs(b));
@@ -140,10 +138,7 @@ DotIndex same_place(Index row, Index col) {
 TEMPLATE_TEST_CASE("stick and slip do not depend on how the image is held",
                    "[stick_ratio][law]",
                    Policies<StickConsensus<>>,
-                   (Policies<StickConsensus<Freedom::rigid>, UpdatedReference, NoDenoising>),
-                   (Policies<StickConsensus<>, published::FirstReference, published::DotMean>),
-                   Policies<published::ReferenceDotMotion<>>,
-                   PublishedPolicies) {
+                   (Policies<StickConsensus<Freedom::rigid>, UpdatedReference, NoDenoising>)) {
   rc::prop("shifted, rotated, mirrored, enlarged with the thresholds", [] {
     const Recording recording = any_recording(test::whole(0, 1) == 0 ? 0 : 0.05);
     const Said said = follow(TestType::ratio(recording), recording);
@@ -168,10 +163,7 @@ TEMPLATE_TEST_CASE("stick and slip do not depend on how the image is held",
 TEMPLATE_TEST_CASE("stick and slip do not depend on how the dots are numbered",
                    "[stick_ratio][law]",
                    Policies<StickConsensus<>>,
-                   (Policies<StickConsensus<Freedom::scaling>, UpdatedReference, NoDenoising>),
-                   (Policies<StickConsensus<>, published::FirstReference, published::DotMean>),
-                   Policies<published::ReferenceDotMotion<>>,
-                   PublishedPolicies) {
+                   (Policies<StickConsensus<Freedom::scaling>, UpdatedReference, NoDenoising>)) {
   rc::prop("from below, from the right, by columns", [] {
     const Recording recording = any_recording(test::whole(0, 1) == 0 ? 0 : 0.05);
     const Said said = follow(TestType::ratio(recording), recording);
@@ -200,9 +192,7 @@ TEMPLATE_TEST_CASE("stick and slip do not depend on how the dots are numbered",
 TEMPLATE_TEST_CASE("a dot that begins to slip never raises the ratio",
                    "[stick_ratio][law]",
                    Policies<StickConsensus<>>,
-                   (Policies<StickConsensus<>, UpdatedReference, NoDenoising>),
-                   Policies<published::ReferenceDotMotion<>>,
-                   (Policies<StickConsensus<Freedom::translation>, published::FirstReference>)) {
+                   (Policies<StickConsensus<>, UpdatedReference, NoDenoising>)) {
   // Without noise; the slip is beyond the gate of the denoising, never of the dots around the
   // middle, where the search begins, and never more than the motion, so that d_max is unchanged.
   rc::prop("clear slip of one dot more lowers it by that dot", [] {
@@ -242,8 +232,7 @@ TEMPLATE_TEST_CASE("a dot that begins to slip never raises the ratio",
 
 TEMPLATE_TEST_CASE("identical frames say nothing new",
                    "[stick_ratio][law]",
-                   Policies<StickConsensus<>>,
-                   PublishedPolicies) {
+                   Policies<StickConsensus<>>) {
   rc::prop("the ratio stands", [] {
     const Recording recording = any_recording(test::uniform(0, 0.6));
     const auto ratio = TestType::ratio(recording, {.store = test::whole(0, 1) == 0 ? 0 : 0.025});
@@ -333,14 +322,10 @@ TEST_CASE("dots lost at random change the ratio by the sampling error", "[stick_
   }
 }
 
-TEMPLATE_TEST_CASE(
-    "nothing is worse than a status",
-    "[stick_ratio][law]",
-    Policies<StickConsensus<>>,
-    (Policies<StickConsensus<Freedom::scaling>, published::FirstReference, published::DotMean>),
-    (Policies<StickConsensus<>, UpdatedReference, NoDenoising>),
-    Policies<published::ReferenceDotMotion<>>,
-    PublishedPolicies) {
+TEMPLATE_TEST_CASE("nothing is worse than a status",
+                   "[stick_ratio][law]",
+                   Policies<StickConsensus<>>,
+                   (Policies<StickConsensus<>, UpdatedReference, NoDenoising>)) {
   rc::prop("whatever the dots, the flags, the times and the sizes", [] {
     const Index rows = test::whole(1, 8), cols = test::whole(1, 8);
     const auto bad = [](double good) {

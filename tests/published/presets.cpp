@@ -11,12 +11,10 @@
 #include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
-#include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/image.hpp"
 #include "support/numbers.hpp"
-#include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
 using test::Image;
@@ -56,35 +54,6 @@ TEST_CASE("published object motion: Euler angles of steps are added up", "[publi
   CHECK(last.angles.x_rad == Approx(angle).epsilon(1e-6));
   CHECK(last.angles.y_rad == Approx(0).margin(1e-6));
   CHECK(last.angles.z_rad == Approx(angle).epsilon(1e-6));
-}
-
-TEST_CASE("published stick ratio: dots that move as one stick", "[published]") {
-  const auto ratio = published::stick_ratio<double>(9, 9);
-  auto state = ratio.start();
-  test::ContactFlags touching(9, 9, 1);
-  for (Index j = 0; j < 9; ++j) {
-    touching(8, j) = 0;  // the object's outline lies within the print
-  }
-  test::DotStates states(9, 9);
-  test::PointsPx dots(9, 9);
-  StickRatioResult<double> result;
-  for (int k = 0; k < 10; ++k) {
-    for (Index i = 0; i < 9; ++i) {
-      for (Index j = 0; j < 9; ++j) {
-        const bool slips = k > 5 && i == 0;  // a row stays behind
-        const double x = slips ? 5 * 0.8 : k * 0.8;
-        dots(i, j) = {100 + 20 * static_cast<double>(j) + x, 100 + 20 * static_cast<double>(i)};
-      }
-    }
-    result = ratio(dots, touching, states, state);
-    if (k == 5) {
-      CHECK(result.ok());
-      CHECK(result.stick_ratio == 1);
-    }
-  }
-  CHECK(result.ok());
-  CHECK(result.stick_ratio < 1);
-  CHECK(result.stick_ratio > 0.7);
 }
 
 TEST_CASE("published normal force: the printed curves", "[published]") {

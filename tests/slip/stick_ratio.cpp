@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,6 +27,7 @@ using test::SlipStep;
 namespace {
 
 const Point2<double> missing{test::nan, test::nan};
+const StickTest test_px{.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
 
 /// Dots of 9 x 9, all in contact, displaced by (x, y).
 PointsPx shifted(double x, double y = 0, Index rows = 9, Index cols = 9) {
@@ -113,8 +114,7 @@ TEST_CASE("stick ratio: numbers of the states of a dot") {
 
 TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is found",
                    "[stick_ratio]",
-                   StickConsensus<>,
-                   published::ReferenceDotMotion<>) {
+                   StickConsensus<>) {
   const double turn_rad = 0.05, zoom = 1.03;
   SlippingDots dots;
   const StickRatio<TestType, UpdatedReference, ResidualMean, double> ratio(21, 21);
@@ -150,9 +150,7 @@ TEMPLATE_TEST_CASE("stick ratio: what moves as one sticks, and its motion is fou
 TEMPLATE_TEST_CASE("stick ratio: dots that stay behind slip",
                    "[stick_ratio]",
                    StickConsensus<>,
-                   StickConsensus<Freedom::translation>,
-                   published::ReferenceDotMotion<>,
-                   published::ReferenceDotMotion<Freedom::rigid>) {
+                   StickConsensus<Freedom::translation>) {
   SlippingPattern pattern;
   pattern.shear_pitches = 0;
   SlippingDots truth(pattern);
@@ -244,26 +242,11 @@ TEST_CASE("stick ratio: the oldest frame is forgotten") {
   }
 }
 
-TEST_CASE("stick ratio: the first reference stays") {
-  Follower<StickConsensus<>, published::FirstReference> f;
-  (void)f(shifted(0));
-  CHECK(f(shifted(2)).status == StickStatus::no_reference);
-  for (int k = 1; k < 9; ++k) {
-    const auto r = f(shifted(2 + k));
-    CHECK(r.updated());
-    CHECK(r.reference_age == 1 + k);
-    CHECK(r.furthest_px == Approx(2 + k));
-  }
-  CHECK(f(shifted(1)).status == StickStatus::no_reference);  // back at its starting position
-  CHECK(f.state.stored_frames() == 1);
-}
-
 TEST_CASE("stick ratio: the threshold grows with the displacement") {
   // delta = 0.24 d_max / 2
   for (const double moved_px : {2.5, 4.0, 10.0}) {
     for (const double share : {0.99, 1.01}) {
-      Follower<published::ReferenceDotMotion<Freedom::translation>, UpdatedReference, NoDenoising>
-          f;
+      Follower<StickConsensus<Freedom::translation>, UpdatedReference, NoDenoising> f;
       (void)f(shifted(0));
       auto dots = shifted(moved_px);
       dots(2, 6).x -= share * 0.12 * moved_px;
@@ -338,8 +321,6 @@ TEST_CASE("stick ratio: the search begins in the last stick region") {
   const auto tracked = run(StickConsensus<Freedom::translation>());
   CHECK(tracked.reference_dot.col < 4);
   CHECK(tracked.stick == 36);
-  const auto dot = run(published::ReferenceDotMotion<Freedom::translation>());
-  CHECK(dot.stick == 36);
 }
 
 TEST_CASE("stick ratio: the search begins in the last stick region, be it the first dot alone") {
@@ -360,14 +341,13 @@ TEST_CASE("stick ratio: the search begins in the last stick region, be it the fi
 TEMPLATE_TEST_CASE("stick ratio: noise is averaged over neighbours",
                    "[stick_ratio]",
                    ResidualMean,
-                   published::DotMean,
                    NoDenoising) {
   // Weights 6, 2, 1 leave sqrt(36 + 4 * 4 + 4 * 1) / 18 of the noise. For the remaining noise s,
   // the share p of the dots with all neighbours exceeds a threshold of 2 s sqrt(ln(1 / p)).
   const bool none = std::is_same_v<TestType, NoDenoising>;
   const double left = none ? 1 : std::sqrt(56.0) / 18;
   const double noise_px = 0.05, p = 0.05;
-  StickTest test = published::stick_test_px;
+  StickTest test = test_px;
   test.slip = 2 * noise_px * left * std::sqrt(std::log(1 / p)) * 2 / 3;
   double wrong = 0, all = 0;
   test::Random random(7);
@@ -405,7 +385,7 @@ TEST_CASE("stick ratio: a mean of dots leaves the root of the squared weights of
 TEST_CASE("stick ratio: doubts of single dots add as variances") {
   // Four of 81 dots are 0.45 px beside the others. The answer of each has the variance p (1 - p),
   // with the logistic curve nearest to the normal distribution.
-  const StickTest test = published::stick_test_px;
+  const StickTest test = test_px;
   auto now = shifted(3);
   now(2, 2).y += 0.45;
   now(6, 6).y += 0.45;
@@ -422,45 +402,6 @@ TEST_CASE("stick ratio: doubts of single dots add as variances") {
     return p * (1 - p);
   };
   CHECK(r.ratio_sd == Approx(std::sqrt(4 * variance(0.45) + 77 * variance(0)) / 81));
-}
-
-TEST_CASE("stick ratio: positions are averaged with their neighbours in pairs") {
-  // For a dot without its right neighbour the mean over the others lies 2.4 px to its left, ten
-  // thresholds: it would slip whenever the neighbour appears or disappears.
-  const PointsPx still = test::SlippingDots().dots;
-  double sum_px = 0, weights = 0;
-  for (Index i = -1; i <= 1; ++i) {
-    for (Index j = -1; j <= 1; ++j) {
-      const bool there = i != 0 || j != 1;
-      const double weight = i == 0 && j == 0 ? 6 : i == 0 || j == 0 ? 2 : 1;
-      sum_px += there ? weight * (still(10 + i, 10 + j).x - still(10, 10).x) : 0;
-      weights += there ? weight : 0;
-    }
-  }
-  CHECK(sum_px / weights == Approx(-2.44).margin(0.01));
-  const auto run = [](bool lost_at_first, bool lost_now) {
-    SlippingDots truth;
-    const StickRatio<published::ReferenceDotMotion<Freedom::translation>, UpdatedReference,
-                     published::DotMean>
-        ratio(21, 21);
-    auto state = ratio.start();
-    DotStates states(21, 21);
-    const auto frame = [&](bool lost) {
-      auto dots = truth.dots;
-      dots(10, 12) = lost ? missing : dots(10, 12);
-      return ratio(dots, truth.contact, states, state);
-    };
-    (void)frame(lost_at_first);
-    truth.step({.shift_px = 3});
-    return frame(lost_now);
-  };
-  CHECK(run(false, false).stick == 213);
-  for (const auto& r : {run(true, true), run(true, false), run(false, true)}) {
-    CHECK(r.updated());
-    CHECK(r.slip == 0);
-    CHECK(r.unknown == 1);
-    CHECK(r.stick == 212);
-  }
 }
 
 TEST_CASE("stick ratio: copies of a state go on alike, and apart") {
@@ -621,7 +562,7 @@ TEST_CASE("stick ratio, bad input: dots in no order, and in another unit") {
   }
   SECTION("thresholds in px for dots in mm or m, or far too large") {
     for (const double unit : {0.08, 8e-5}) {
-      Follower<> f(published::stick_test_px);
+      Follower<> f(test_px);
       const auto in_unit = [&](double x) {
         auto dots = shifted(x);
         for (auto& p : dots.cells) {
@@ -744,7 +685,7 @@ TEST_CASE("stick ratio: the pitch may double or halve within a contact, or be un
     }
     CHECK(f(dots).status != StickStatus::wrong_scale);
   }
-  Follower<> known_later(published::stick_test_px);
+  Follower<> known_later(test_px);
   (void)known_later(shifted(0), alternating);
   CHECK(known_later(shifted(3)).stick == 41);
   Follower<> known_before;
@@ -923,10 +864,7 @@ TEST_CASE("stick ratio, bad input: an empty contact mask") {
   CHECK(f(shifted(12)).updated());
 }
 
-TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot",
-                   "[stick_ratio]",
-                   StickConsensus<>,
-                   published::ReferenceDotMotion<>) {
+TEMPLATE_TEST_CASE("stick ratio, bad input: one single dot", "[stick_ratio]", StickConsensus<>) {
   const auto run = [](const StickTest& test, Index rows, Index cols) {
     Follower<TestType> f(test, {}, {}, {}, rows, cols);
     (void)f(shifted(0, 0, rows, cols));
@@ -1035,28 +973,6 @@ TEST_CASE("stick ratio: the doubt of an answer is half at the limit, and the sam
   }
 }
 
-TEST_CASE(
-    "published stick ratio: a row of dots that moves along itself says nothing of the scale") {
-  // any direction, places whose differences have roundoff
-  for (int k = 0; k < 40; ++k) {
-    const double angle = 0.15 * k + 0.1;
-    const Point2<double> along = {std::cos(angle), std::sin(angle)};
-    const auto row = [&](double moved_px) {
-      PointsPx dots(1, 9);
-      for (Index j = 0; j < 9; ++j) {
-        const double at = 20 * static_cast<double>(j) + moved_px;
-        dots(0, j) = Point2<double>{2000, 3000} + at * along;
-      }
-      return dots;
-    };
-    Follower<published::ReferenceDotMotion<>> f({}, {}, {}, {}, 1, 9);
-    (void)f(row(0));
-    const auto r = f(row(3.3));
-    REQUIRE(r.updated());
-    CHECK(r.scale == 1);
-  }
-}
-
 TEST_CASE("stick ratio, bad input: other sizes and foreign states are refused") {
   const StickRatio ratio(9, 9);
   auto state = ratio.start();
@@ -1139,13 +1055,6 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
         "ResidualMean: gate = 0.5, must be finite and >= 1");
   CHECK(denoising(ResidualMean{.gate = test::nan}) ==
         "ResidualMean: gate = nan, must be finite and >= 1");
-  CHECK(denoising(published::DotMean{.weights = {.self = -1}}) ==
-        "DotMean: weights.self = -1, must be finite and > 0");
-  CHECK(denoising(published::DotMean{.weights = {.side = test::nan}}) ==
-        "DotMean: weights.side = nan, must be finite and >= 0");
-  CHECK(denoising(published::DotMean{.weights = {.diagonal = -0.5}}) ==
-        "DotMean: weights.diagonal = -0.5, must be finite and >= 0");
-  CHECK(denoising(published::DotMean{.weights = {1, 0, 0}}) == "accepted");
   CHECK(denoising(NoDenoising()) == "accepted");
 }
 
@@ -1265,12 +1174,4 @@ TEST_CASE("stick ratio: its standard deviation is the scatter of its answers", "
       CHECK(near > 0.85 * answers);  // measured: 0.90 to 1; of a normal distribution 0.95
     }
   }
-  // the printed form has none
-  const auto printed = published::stick_ratio(9, 9);
-  auto state = printed.start();
-  test::DotStates states(9, 9);
-  (void)printed(shifted(0), ContactFlags(9, 9, 1), states, state);
-  const auto r = printed(shifted(3), ContactFlags(9, 9, 1), states, state);
-  CHECK(r.updated());
-  CHECK(std::isnan(r.ratio_sd));
 }

@@ -23,8 +23,9 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "membranes.hpp"
+#include "support/published_stick.hpp"
 #include "support/slipping_dots.hpp"
 #include "support/stick_scene.hpp"
 
@@ -94,8 +95,10 @@ inline std::vector<StickRecording> finite_elements(const std::string& name) {
 inline std::vector<StickRecordings> stick_recordings() {
   using enum test::SlipScene;
   // 1 % of sticking dots are taken for slipping
-  fingerpad::StickTest steady = fingerpad::published::stick_test_px;
-  steady.slip = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
+  const fingerpad::StickTest steady = {.reference = 2,
+                                       .store = 0.5,
+                                       .slip = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0)),
+                                       .pitch = 1};
   fingerpad::StickTest closer = steady;
   closer.reference = 1;
   closer.store = 0.25;
@@ -114,9 +117,24 @@ inline std::vector<StickRecordings> stick_recordings() {
   return all;
 }
 
+/// The default for thresholds.
+template <class Ratio = fingerpad::StickRatio<>>
+Ratio made(const fingerpad::StickTest& test) {
+  return Ratio(21, 21, test);
+}
+/// The printed method, with thresholds in px.
+inline test::PublishedStick printed(const fingerpad::StickTest& test, bool updates = true) {
+  fingerpad::published::StickRatioOptions options = {.updates = updates};
+  if (test.pitch == 1) {
+    options.U = test.reference;
+    options.U_min = test.store;
+    options.delta_0 = test.slip;
+  }
+  return {.ratio = {21, 21, options}};
+}
+
 template <class Ratio>
-Errors stick_errors(const StickRecordings& of) {
-  const Ratio ratio(21, 21, of.test);
+Errors stick_errors(const Ratio& ratio, const StickRecordings& of) {
   test::DotStates states(21, 21);
   Errors errors;
   for (const StickRecording& recording : of.recordings) {
@@ -131,17 +149,18 @@ Errors stick_errors(const StickRecordings& of) {
   return errors;
 }
 
-/// The default with the effect and with it off.
-template <class Without>
+/// With the effect and with it off; both are made of thresholds.
+template <class With, class Without>
 Effect stick_effect(const std::vector<StickRecordings>& all,
                     const std::string& name,
                     const std::string& on,
-                    const std::string& off) {
-  using With = fingerpad::StickRatio<>;
+                    const std::string& off,
+                    const With& with_of,
+                    const Without& without_of) {
   Effect effect{.name = name, .quantity = "stick ratio", .unit = "1", .on = on, .off = off};
   for (const auto& recordings : all) {
-    effect.with_in(recordings.scene).add(stick_errors<With>(recordings));
-    effect.without_in(recordings.scene).add(stick_errors<Without>(recordings));
+    effect.with_in(recordings.scene).add(stick_errors(with_of(recordings.test), recordings));
+    effect.without_in(recordings.scene).add(stick_errors(without_of(recordings.test), recordings));
   }
   const StickRecording& drag = all[1].recordings.front();
   const auto run = [&](const auto& ratio) {
@@ -152,8 +171,8 @@ Effect stick_effect(const std::vector<StickRecordings>& all,
       }
     };
   };
-  const With with(21, 21);
-  const Without without(21, 21);
+  const auto with = with_of({});
+  const auto without = without_of({});
   auto run_with = run(with);
   auto run_without = run(without);
   effect.cost_us =
@@ -165,16 +184,19 @@ inline std::vector<Effect> stick_effects() {
   using namespace fingerpad;
   const auto all = stick_recordings();
   return {
-      stick_effect<StickRatio<StickConsensus<>, UpdatedReference, NoDenoising>>(
-          all, "denoise", "`ResidualMean`", "`NoDenoising`"),
-      stick_effect<StickRatio<StickConsensus<Freedom::scaling>>>(
-          all, "rotation cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::scaling>`"),
-      stick_effect<StickRatio<StickConsensus<Freedom::rigid>>>(
-          all, "scale cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::rigid>`"),
-      stick_effect<StickRatio<StickConsensus<>, published::FirstReference>>(
-          all, "reference update", "`UpdatedReference`", "`published::FirstReference`"),
-      stick_effect<StickRatio<published::ReferenceDotMotion<>>>(
-          all, "motion of many dots", "`StickConsensus<>`", "`published::ReferenceDotMotion<>`")};
+      stick_effect(all, "denoise", "`ResidualMean`", "`NoDenoising`", made<>,
+                   made<StickRatio<StickConsensus<>, UpdatedReference, NoDenoising>>),
+      stick_effect(all, "rotation cancel", "`StickConsensus<>`",
+                   "`StickConsensus<Freedom::scaling>`", made<>,
+                   made<StickRatio<StickConsensus<Freedom::scaling>>>),
+      stick_effect(all, "scale cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::rigid>`",
+                   made<>, made<StickRatio<StickConsensus<Freedom::rigid>>>),
+      stick_effect(
+          all, "reference update", "`published::StickRatio`", "`updates = false`",
+          [](const StickTest& test) { return printed(test); },
+          [](const StickTest& test) { return printed(test, false); }),
+      stick_effect(all, "motion of many dots", "`StickConsensus<>`", "`published::StickRatio`",
+                   made<>, [](const StickTest& test) { return printed(test); })};
 }
 
 }  // namespace bench::ablation

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
+#include "support/published_stick.hpp"
+#include "support/ratio_measures.hpp"
 #include "support/stick_scene.hpp"
 #include "table.hpp"
 
@@ -21,7 +22,7 @@ struct Course {
   std::vector<double> found, truth;  ///< in frames with an answer
   double sum = 0;                    ///< S: mean of the ratios
   double falls = 0;                  ///< D: sum of all decreases
-  double falls_beyond = 0;           ///< D': excess of D over the net drop
+  double falls_beyond = 0;           ///< D'
 };
 
 template <class Ratio>
@@ -40,22 +41,24 @@ Course course_of(const Ratio& ratio,
       c.truth.push_back(scene.stick_ratio(k));
     }
   }
-  for (std::size_t k = 0; k < c.found.size(); ++k) {
-    c.sum += c.found[k] / static_cast<double>(c.found.size());
-    const double fall = k > 0 ? c.found[k - 1] - c.found[k] : 0;
-    c.falls += fall > 0 ? fall : 0;
-  }
-  c.falls_beyond = c.found.empty() ? 0 : c.falls - (c.found.front() - c.found.back());
+  const test::RatioMeasures m = test::measures_of(c.found);
+  c.sum = m.steps > 0 ? m.sum / m.steps : 0;
+  c.falls = m.decreases;
+  c.falls_beyond = m.rises;
   return c;
 }
 
 /// The threshold for 0.06 px of noise before denoising, as in the accuracy tests.
 inline fingerpad::StickTest test_of(double reference_px) {
-  fingerpad::StickTest test = fingerpad::published::stick_test_px;
-  test.reference = reference_px;
-  test.store = reference_px / 4;
-  test.slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0));
-  return test;
+  return {.reference = reference_px,
+          .store = reference_px / 4,
+          .slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0)),
+          .pitch = 1};
+}
+/// The printed method with the same thresholds.
+inline test::PublishedStick printed_ratio(double reference_px) {
+  const fingerpad::StickTest test = test_of(reference_px);
+  return {.ratio = {21, 21, {.U = test.reference, .U_min = test.store, .delta_0 = test.slip}}};
 }
 
 /// S, D and D' of the drag, averaged over 10 noises.
@@ -150,8 +153,7 @@ inline Section slippage_section() {
   for (const double u : {0.5, 1.0, 2.0, 3.0}) {
     section.rows.push_back({u == 0.5 ? "measures S and D over U, 58 steps" : "",
                             "U = " + number(u) + " px: S / n, D, D' (D beyond the net drop)",
-                            u == 2 ? "chosen: S and D small" : "",
-                            measures(published::stick_ratio<float>(21, 21, test_of(u))),
+                            u == 2 ? "chosen: S and D small" : "", measures(printed_ratio(u)),
                             measures(StickRatio<>(21, 21, test_of(u))),
                             "plate dragged to slip, 18 steps"});
   }
@@ -162,8 +164,7 @@ inline Section slippage_section() {
       return Spread(ratio_errors(ratio, scene, phase)).mean_and_worst();
     };
     section.rows.push_back({experiment, "error of the ratio, mean / largest", printed,
-                            cell(published::stick_ratio<float>(21, 21, test_of(2))),
-                            cell(StickRatio<>(21, 21, test_of(2))), nearest});
+                            cell(printed_ratio(2)), cell(StickRatio<>(21, 21, test_of(2))), nearest});
   };
   add("dragged to slip", "curves of Fig. 16", "drag", "drag", "plate dragged to slip");
   add("the opposite direction", "\"can still estimate\"", "drag", "back", "the same, back to slip");

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "fingerpad/published/stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/json_section.hpp"
 
@@ -102,7 +102,7 @@ fingerpad::StickTest read_stick(const Section& root) {
   if (!section.has("reference_px") && !section.has("store_px") && !section.has("slip_px")) {
     return {.covers_pattern = covers};
   }
-  fingerpad::StickTest test = fingerpad::published::stick_test_px;
+  fingerpad::StickTest test{.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
   test.covers_pattern = covers;
   test.free_frames = 0;  // given thresholds are not calibrated on free frames
   const auto read = [&](const char* key, double& value) {

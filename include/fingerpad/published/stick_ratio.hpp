@@ -1,250 +1,366 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The stick ratio by reference update as printed: Ito, Kim, Obinata, "Robust slippage degree
-// estimation based on reference update of vision-based tactile sensor", with its backup slides. The
-// object's motion is the displacement of the reference dot, the rotation of its four neighbours and
-// the scale of all neighbours. The reference is the newest stored frame beyond U, and positions are
-// averaged over neighbours. docs/errata.md, E032-E038.
+// The stick ratio as printed, in plain loops over all stored frames. Source: Ito, Kim, Obinata,
+// "Robust slippage degree estimation based on reference update of vision-based tactile sensor", the
+// talk and its backup slides; "Acquisition of contact force and slippage using a vision-based
+// tactile sensor with a fluid-type touchpad", eqs. 6-8, is the conventional method. A dot that
+// was not found counts nowhere. docs/errata.md, E032-E038.
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
 
-/// The object is displaced like the reference dot, rotated like its four neighbours about it, and
-/// scaled like all neighbours in contact. The noise of those dots affects the answer for every dot.
-/// alpha is the ratio of two sums of absolute distances between neighbouring dots, taken
-/// perpendicular to their motion. Without motion there is no direction and alpha is 1 (E036).
-template <Freedom Free = Freedom::similarity>
-struct ReferenceDotMotion {};
-
-/// The conventional method, with which the slides compare reference update: the reference is always
-/// the first frame with contact. It tells stick from slip until the object first slips as a whole,
-/// reverses its motion, or is pressed harder.
-struct FirstReference {
-  static constexpr Index capacity = 1;
+/// "Calculation of scale parameter alpha".
+enum class StickScale : std::uint8_t {
+  none,    ///< before Case 3
+  plain,   ///< sums of all distances between neighbours
+  across,  ///< "elimination of parallel component": only the part perpendicular to the motion
 };
 
-/// Averages positions before all other steps; dots at the edge of the pattern stay as they are. Two
-/// opposite neighbours are used only together, because one alone would pull the mean toward itself.
-/// The source does not print the weights.
-struct DotMean {
-  DotWeights weights = {};
+/// The printed values and steps, for dots in px; each step can be left out.
+struct StickRatioOptions {
+  double U = 2;                   ///< >= 0
+  double U_min = 0.5;             ///< >= 0, not printed
+  double delta_0 = 0.24;          ///< > 0
+  double S1 = 6, S2 = 2, S3 = 1;  ///< weights of a dot, of its 4 and its 4 diagonal neighbours, not
+                                  ///< printed, S1 > 0; without denoising S2 = S3 = 0
+  bool updates = true;            ///< false: the reference is the first frame with contact
+  bool cancels_rotation = true;
+  bool wraps = false;  ///< whether theta_1 to theta_4 are differences of two directions (E034), or
+                       ///< the angles between them; the slides do not say
+  StickScale scale = StickScale::across;
+  bool delta_grows = true;        ///< delta = delta_0 d_max / U; false: delta = delta_0
+  bool follows_stick = true;      ///< the reference dot is that nearest to the center of the stick
+                                  ///< region; false: the central dot
+  bool moves_with_stick = false;  ///< d_max is that of a dot "in stick region" of the last answer,
+                                  ///< as on one slide; false: of a dot in contact
+  Index capacity = 64;            ///< stored frames, in [1, 1e6]; the slides keep all
 };
 
-template <Freedom Free>
-void expects_valid(const ReferenceDotMotion<Free>&) {}
-inline void expects_valid(const FirstReference&) {}
-inline void expects_valid(const DotMean& mean) {
-  fingerpad::expects_valid(mean.weights, "DotMean");
+/// The conventional method: the displacement from the first frame against that of the central dot.
+inline constexpr StickRatioOptions conventional_stick_ratio = {.U = 0,
+                                                               .S2 = 0,
+                                                               .S3 = 0,
+                                                               .updates = false,
+                                                               .cancels_rotation = false,
+                                                               .scale = StickScale::none,
+                                                               .delta_grows = false,
+                                                               .follows_stick = false};
+
+/// The first parameter without meaning, or "".
+inline std::string check(const StickRatioOptions& o) {
+  return fingerpad::check("published::StickRatio",
+                          {{"U", o.U, o.delta_grows ? positive : not_negative},
+                           {"U_min", o.U_min, not_negative},
+                           {"delta_0", o.delta_0, positive},
+                           {"S1", o.S1, positive},
+                           {"S2", o.S2, not_negative},
+                           {"S3", o.S3, not_negative},
+                           {"capacity", o.capacity, within(1, 1e6)}});
 }
 
-// Quality of a sequence of stick ratios. Source: "Two measures for U" of 003:
-//   S = sum of phi_i                              smaller the earlier the ratio falls
-//   D = sum of phi_(i-1) - phi_i over its falls   "regarded as the level of estimation error"
-// D includes the true fall: D = (phi_1 - phi_n) + sum of the rises (E038). The error is therefore
-// D' = D - (phi_1 - phi_n), the sum of the rises. It is 0 for a ratio that only falls, but also for
-// one that never changes, so D' is meaningful only together with S.
+template <scalar S = double>
+struct [[nodiscard]] StickRatioResult {
+  bool accepted = false;        ///< false: a grid of another size
+  bool updated = false;         ///< this frame has an answer
+  S stick_ratio = S(1);         ///< phi; without a new answer, the last one
+  Index reference_age = 0;      ///< frames from the reference to this one; 0: none
+  S furthest_px = S(0);         ///< d_max
+  DotIndex reference_dot = {};  ///< whose displacement is d_0
+  S angle_rad = S(0);           ///< theta_0
+  S scale = S(1);               ///< alpha
 
-struct RatioMeasures {
-  double sum = 0;        ///< S
-  double decreases = 0;  ///< D
-  double rises = 0;      ///< D', summed directly: >= 0, and exactly 0 without rises
-  Index steps = 0;       ///< number of finite ratios
+  bool ok() const { return updated; }
+};
 
-  double sum_per_step() const { return per_step(sum); }
-  double decreases_per_step() const { return per_step(decreases); }
-  double rises_per_step() const { return per_step(rises); }
+/// The stick ratio of a grid of rows x cols dots, both >= 3. The object is the state: copy it to
+/// return to a frame. A frame takes O(capacity dots) and allocates nothing.
+template <scalar S = double>
+class StickRatio {
+  using Points = std::vector<Point2<S>>;
+  using Flags = std::vector<char>;
+  struct Image {
+    Points dots;
+    std::int64_t frame = 0;
+    S d_max = S(0);  ///< from it to the current frame
+  };
+
+ public:
+  /// Refuses bad parameters (parameter_error).
+  StickRatio(Index rows, Index cols, const StickRatioOptions& options = {})
+      : rows_(rows), cols_(cols), o_(options) {
+    require(options);
+    expects_grid_size("published::StickRatio", rows, cols, 3, options.capacity);
+    pre_.resize(static_cast<std::size_t>(rows * cols));
+    current_ = post_ = pre_;
+    touches_.resize(pre_.size());
+    sticks_ = touches_;
+    repository_.assign(static_cast<std::size_t>(options.capacity), {pre_});
+  }
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  /// Looks at a frame of dots in px, of which those with a true `contact` touch the object. A frame
+  /// without contact ends the contact: the stored frames are forgotten.
+  template <dot_grid Dots, contact_mask Contact>
+  StickRatioResult<S> operator()(const Dots& dots_px, const Contact& contact) {
+    result_.updated = false;
+    result_.accepted = read(dots_px, contact);
+    if (!result_.accepted) {
+      return result_;
+    }
+    ++frame_;
+    if (std::find(touches_.begin(), touches_.end(), 1) == touches_.end()) {
+      stored_ = 0;
+      has_sticks_ = false;
+      return result_;
+    }
+    denoise();
+    for (std::size_t i = 0; i < stored_; ++i) {
+      repository_[i].d_max = furthest(repository_[i].dots);
+    }
+    const std::size_t i_ref = reference_image();
+    result_.reference_age = 0;
+    if (i_ref < stored_) {
+      const Image& reference = repository_[i_ref];
+      result_.reference_age = static_cast<Index>(frame_ - reference.frame);
+      result_.furthest_px = reference.d_max;
+      estimate(reference.dots);
+    }
+    if (stored_ == 0 || (o_.updates && S(o_.U_min) < repository_[stored_ - 1].d_max)) {
+      store();
+    }
+    return result_;
+  }
 
  private:
-  double per_step(double of) const {
-    return steps > 0 ? of / static_cast<double>(steps) : not_a_number<double>();
-  }
-};
+  std::size_t at(Index k, Index l) const { return static_cast<std::size_t>(k * cols_ + l); }
+  bool is_inner(Index k, Index l) const { return k > 0 && l > 0 && k + 1 < rows_ && l + 1 < cols_; }
 
-/// Measures of the ratios of all frames in order. A frame without a new answer counts as a step
-/// with the last ratio. It adds to S, because slip not yet detected is late, and nothing to D and
-/// D'. NaN (no contact) is no step, and the ratios before and after it are not compared. O(steps).
-template <scalar S>
-RatioMeasures measures_of(std::span<const S> ratios) {
-  RatioMeasures m;
-  double before = not_a_number<double>();
-  for (const S& ratio : ratios) {
-    const double now = static_cast<double>(value(ratio));
-    if (is_finite(now)) {
-      m.sum += now;
-      m.decreases += now < before ? before - now : 0;
-      m.rises += before < now ? now - before : 0;
-      ++m.steps;
+  template <class Dots, class Contact>
+  bool read(const Dots& dots_px, const Contact& contact) {
+    const auto from = as_view(dots_px);
+    const auto flags = as_view(contact);
+    if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, flags)) {
+      return false;
     }
-    before = now;
+    for (Index k = 0; k < rows_; ++k) {
+      for (Index l = 0; l < cols_; ++l) {
+        const cell_t<Dots> p = from(k, l);
+        const Point2<S> dot = {S(point_traits<cell_t<Dots>>::x(p)),
+                               S(point_traits<cell_t<Dots>>::y(p))};
+        const bool found = is_plausible(dot);
+        pre_[at(k, l)] = found ? dot : Point2<S>{not_a_number<S>(), not_a_number<S>()};
+        touches_[at(k, l)] = found && is_contact(cell_t<Contact>(flags(k, l))) ? 1 : 0;
+      }
+    }
+    return true;
   }
-  return m;
-}
 
-/// The printed values, for dots in px. U_min (`store`) is not printed.
-inline constexpr StickTest stick_test_px = {.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
+  /// "Weighted average of target dot and the adjacent 8 dots"; border dots stay as they are. A
+  /// neighbour that was not found is left out with the one opposite.
+  void denoise() {
+    constexpr std::array<std::pair<Index, Index>, 4> steps = {{{0, 1}, {1, 0}, {1, -1}, {1, 1}}};
+    current_ = pre_;
+    for (Index k = 1; k + 1 < rows_; ++k) {
+      for (Index l = 1; l + 1 < cols_; ++l) {
+        Point2<S> sum = S(o_.S1) * pre_[at(k, l)];
+        double weights = o_.S1;
+        for (const auto& [m, n] : steps) {
+          const double w = m == 0 || n == 0 ? o_.S2 : o_.S3;
+          const Point2<S> both = pre_[at(k + m, l + n)] + pre_[at(k - m, l - n)];
+          if (is_finite(both)) {
+            sum += S(w) * both;
+            weights += 2 * w;
+          }
+        }
+        current_[at(k, l)] = sum / S(weights);
+      }
+    }
+  }
 
-template <scalar S = float>
-using StickRatio = fingerpad::StickRatio<ReferenceDotMotion<>, UpdatedReference, DotMean, S>;
+  /// d_max(i): the largest displacement of a dot from a stored frame.
+  S furthest(const Points& stored) const {
+    const Flags& among = o_.moves_with_stick && has_sticks_ ? sticks_ : touches_;
+    S most = S(0);
+    for (std::size_t k = 0; k < current_.size(); ++k) {
+      const S d = among[k] != 0 ? norm(current_[k] - stored[k]) : S(0);
+      most = most < d ? d : most;
+    }
+    return most;
+  }
 
-/// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
-template <scalar S = float>
-StickRatio<S> stick_ratio(Index rows, Index cols, const StickTest& test = stick_test_px) {
-  return StickRatio<S>(rows, cols, test);
-}
+  /// i_ref = sup{i: d_max(i) > U, i_C <= i <= N}; the number of stored frames if there is none.
+  std::size_t reference_image() const {
+    std::size_t i_C = stored_ > 0 ? stored_ - 1 : 0;
+    while (i_C > 0 && repository_[i_C].d_max < repository_[i_C - 1].d_max) {
+      --i_C;
+    }
+    for (std::size_t i = stored_; i-- > i_C;) {
+      if (S(o_.U) < repository_[i].d_max) {
+        return i;
+      }
+    }
+    return stored_;
+  }
+
+  /// The reference dot, one with four neighbours; the central dot if none of those counts.
+  DotIndex reference_dot(const Points& ref) const {
+    DotIndex best = {rows_ / 2, cols_ / 2};
+    if (!o_.follows_stick) {
+      return best;
+    }
+    const Flags& among = has_sticks_ ? sticks_ : touches_;
+    const Point2<S> center = has_sticks_ ? stick_center_ : center_of(touches_);
+    S nearest = S(-1);
+    for (Index k = 1; k + 1 < rows_; ++k) {
+      for (Index l = 1; l + 1 < cols_; ++l) {
+        const S away = norm(current_[at(k, l)] - center);
+        const bool counts =
+            among[at(k, l)] != 0 && touches_[at(k, l)] != 0 && is_finite(ref[at(k, l)]);
+        if (counts && (nearest < S(0) || away < nearest)) {
+          nearest = away;
+          best = {k, l};
+        }
+      }
+    }
+    return best;
+  }
+
+  Point2<S> center_of(const Flags& region) const {
+    Point2<S> sum = {S(0), S(0)};
+    double count = 0;
+    for (std::size_t k = 0; k < current_.size(); ++k) {
+      if (region[k] != 0) {
+        sum += current_[k];
+        count += 1;
+      }
+    }
+    return sum / S(count);
+  }
+
+  /// phi against a reference image, and the stick region.
+  void estimate(const Points& ref) {
+    result_.reference_dot = reference_dot(ref);
+    const std::size_t k0 = at(result_.reference_dot.row, result_.reference_dot.col);
+    post_ = current_;
+    result_.angle_rad = S(0);
+    if (o_.cancels_rotation) {
+      cancel_rotation(ref, k0);
+    }
+    const S alpha = result_.scale = scale_from(ref);
+    const Point2<S> d_0 = alpha * post_[k0] - ref[k0];  // the center of the scale cancels (E035)
+    const S delta = o_.delta_grows ? S(o_.delta_0) * result_.furthest_px / S(o_.U) : S(o_.delta_0);
+    double N_s = 0, N_c = 0;
+    for (std::size_t k = 0; k < current_.size(); ++k) {
+      const S off = norm(d_0 - (alpha * post_[k] - ref[k]));  // NaN: not found in one of the frames
+      sticks_[k] = touches_[k] != 0 && off < delta ? 1 : 0;
+      N_s += sticks_[k];
+      N_c += touches_[k] != 0 && is_finite(off) ? 1 : 0;
+    }
+    has_sticks_ = N_s > 0;
+    if (has_sticks_) {
+      stick_center_ = center_of(sticks_);
+    }
+    result_.updated = N_c > 0;
+    result_.stick_ratio = result_.updated ? S(N_s / N_c) : result_.stick_ratio;
+  }
+
+  /// Turns all dots back by theta_0 = (theta_1 + theta_2 + theta_3 + theta_4) / 4.
+  void cancel_rotation(const Points& ref, std::size_t k0) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    const auto row = static_cast<std::size_t>(cols_);
+    S sum = S(0);
+    double count = 0;
+    for (const std::size_t k : {k0 - 1, k0 + 1, k0 - row, k0 + row}) {
+      const Point2<S> a = ref[k] - ref[k0], b = current_[k] - current_[k0];
+      const S theta =
+          o_.wraps ? atan2(b.y, b.x) - atan2(a.y, a.x) : atan2(a.x * b.y - a.y * b.x, dot(a, b));
+      if (is_finite(theta)) {
+        sum += theta;
+        count += 1;
+      }
+    }
+    const S theta_0 = result_.angle_rad = count > 0 ? sum / S(count) : S(0);
+    const S c = cos(theta_0), s = sin(theta_0);
+    for (std::size_t k = 0; k < current_.size(); ++k) {
+      const Point2<S> e = current_[k] - current_[k0];
+      post_[k] = current_[k0] + Point2<S>{c * e.x + s * e.y, c * e.y - s * e.x};
+    }
+  }
+
+  /// alpha, over pairs of neighbours in contact; 1 if there is no such pair. q does not exist for a
+  /// pair that has not moved, which then does not count (E036).
+  S scale_from(const Points& ref) const {
+    S sum_ref = S(0), sum_cur = S(0);
+    const auto across = [](const Point2<S>& e, const Point2<S>& q) {
+      const S part = e.x * q.y - e.y * q.x;
+      return part < S(0) ? -part : part;
+    };
+    constexpr std::array<std::pair<Index, Index>, 4> steps = {{{1, -1}, {1, 0}, {1, 1}, {0, 1}}};
+    for (Index k = 0; k < rows_ && o_.scale != StickScale::none; ++k) {
+      for (Index l = 0; l < cols_; ++l) {
+        for (const auto& [down, right] : steps) {
+          const bool inside = k + down < rows_ && l + right >= 0 && l + right < cols_;
+          if (!inside || touches_[at(k, l)] == 0 || touches_[at(k + down, l + right)] == 0) {
+            continue;
+          }
+          const std::size_t a = at(k, l), b = at(k + down, l + right);
+          const Point2<S> e_ref = ref[a] - ref[b], e_cur = post_[a] - post_[b];
+          const Point2<S> d = (post_[a] - ref[a]) + (post_[b] - ref[b]);
+          if (o_.scale == StickScale::plain && is_finite(e_ref)) {
+            sum_ref += norm(e_ref);
+            sum_cur += norm(e_cur);
+          } else if (const S size = norm(d); S(1e-9) < size) {
+            sum_ref += across(e_ref, d / size);
+            sum_cur += across(e_cur, d / size);
+          }
+        }
+      }
+    }
+    return S(0) < sum_cur ? sum_ref / sum_cur : S(1);
+  }
+
+  /// Appends the frame; beyond the capacity the oldest one is forgotten.
+  void store() {
+    if (stored_ == repository_.size()) {
+      std::rotate(repository_.begin(), repository_.begin() + 1, repository_.end());
+      --stored_;
+    }
+    repository_[stored_].dots = current_;
+    repository_[stored_].frame = frame_;
+    ++stored_;
+  }
+
+  Index rows_, cols_;
+  StickRatioOptions o_;
+  std::vector<Image> repository_;  ///< I_R(i), oldest first, of which `stored_` are valid
+  std::size_t stored_ = 0;         ///< N
+  std::int64_t frame_ = 0;
+  Points pre_, current_, post_;  ///< dots before denoising, after it, and rotated back
+  Flags touches_, sticks_;
+  bool has_sticks_ = false;
+  Point2<S> stick_center_ = {S(0), S(0)};
+  StickRatioResult<S> result_;
+};
 
 }  // namespace published
-
-namespace detail::stick {
-
-// ---- reference
-
-template <class P, class S>
-Choice<S> choose_reference(const published::FirstReference&,
-                           const std::vector<Index>& touching,
-                           const P* now,
-                           const Repository<P>& stored,
-                           const S& reference_sq,
-                           const S&) {
-  Choice<S> choice;
-  if (stored.size() > 0) {
-    choice.furthest_sq = furthest_sq(touching, now, stored.dots(0));
-    choice.age = reference_sq < choice.furthest_sq ? 0 : -1;
-  }
-  return choice;
-}
-template <class P>
-bool is_stored(const published::FirstReference&, const Repository<P>& stored) {
-  return stored.size() == 0;
-}
-
-// ---- motion
-
-/// Sums of distances between neighbours perpendicular to their motion, in the reference frame and
-/// now.
-template <class S>
-struct ScaleSums {
-  S then = S(0), now = S(0);
-  S all = S(0);  ///< sum of |x| + |y| of the distances then: scale for roundoff
-
-  /// Adds a pair of dots. `moved` is the sum of their displacements without the object's rotation.
-  void add(const Point2<S>& e_then, const Point2<S>& e_now, const Point2<S>& moved) {
-    using std::sqrt;
-    const S moved_sq = squared_norm(moved);
-    // 1e-12: a smaller motion has no direction
-    if (S(1e-12) < moved_sq && is_distance_sq(moved_sq)) {
-      const S size = sqrt(moved_sq);
-      all = all + absolute(e_then.x) + absolute(e_then.y);
-      then = then + absolute(S((e_then.x * moved.y - e_then.y * moved.x) / size));
-      now = now + absolute(S((e_now.x * moved.y - e_now.y * moved.x) / size));
-    }
-  }
-  static S absolute(const S& s) { return s < S(0) ? S(-s) : s; }
-};
-
-/// alpha between the two frames. `rotated` is the object's motion without scaling. 1 if the pairs
-/// do not determine alpha, or its value is not plausible.
-template <class S>
-S scale_between(const FramePair<S>& pair, const Similarity<S>& rotated) {
-  const Point2<S> object = rotated.now_at - rotated.then_at;
-  const auto moved = [&](const Point2<S>& now, const Point2<S>& then) {
-    return rotated.residual(now, then);
-  };
-  constexpr std::array<std::pair<int, int>, 4> steps = {{{0, 1}, {1, -1}, {1, 0}, {1, 1}}};
-  ScaleSums<S> sums;
-  for (const Index k : pair.touching) {
-    const Point2<S> a = moved(pair.now[k], pair.then[k]);
-    for (const auto& [down, right] : steps) {
-      const Point2<S> then = beside(pair.then, pair.layout, k, down, right);
-      const Point2<S> b = moved(beside(pair.now, pair.layout, k, down, right), then);
-      const Point2<S> e_then = pair.then[k] - then;
-      sums.add(e_then, e_then + a - b, a + b + S(2) * object);
-    }
-  }
-  const S roundoff = S(1000 * epsilon<S>()) * sums.all;
-  if (!(roundoff < sums.then)) {
-    return S(1);  // all pairs lie along the motion
-  }
-  const S alpha = sums.then / sums.now;
-  return is_plausible_scale(alpha) ? alpha : S(1);
-}
-
-template <Freedom Free, class S>
-Similarity<S> motion_between(const published::ReferenceDotMotion<Free>&,
-                             const FramePair<S>& pair,
-                             Index reference,
-                             const S&,
-                             bool) {
-  using std::sqrt;
-  Similarity<S> map = {S(1), S(0), pair.now[reference], pair.then[reference]};
-  if constexpr (may_rotate(Free)) {
-    PairSums<S> sums;
-    constexpr std::array<std::pair<int, int>, 4> steps = {{{0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
-    for (const auto& [down, right] : steps) {
-      const Point2<S> now = beside(pair.now, pair.layout, reference, down, right) - map.now_at;
-      const Point2<S> then = beside(pair.then, pair.layout, reference, down, right) - map.then_at;
-      if (is_distance_sq(S(squared_norm(now) + squared_norm(then)))) {
-        sums.add(S(1), now, then);
-      }
-    }
-    // theta_0 about the dot itself, not about the centroid of its neighbours. The angle of the
-    // summed products is the mean of four small angles and does not wrap (E034).
-    const S size_sq = sums.along * sums.along + sums.across * sums.across;
-    if (S(0) < size_sq) {
-      const S size = sqrt(size_sq);
-      map.cosine = sums.along / size;
-      map.sine = sums.across / size;
-    }
-  }
-  if constexpr (may_scale(Free)) {
-    const S alpha = scale_between(pair, map);
-    map.cosine = alpha * map.cosine;
-    map.sine = alpha * map.sine;
-  }
-  return map;
-}
-
-// ---- denoising
-
-template <class S>
-void denoise_positions(const published::DotMean& mean,
-                       const GivenDots<Point2<S>>& given,
-                       const DotLayout& layout,
-                       Dots<Point2<S>>& now) {
-  const auto placed = [&](const DotIndex& d, Index down, Index right) {
-    const Index k = (d.row + down) * layout.cols + d.col + right;
-    return is_out_of_place(given.found.data(), layout, layout.dot_at(k)) ? no_dot<Point2<S>>()
-                                                                         : at(given.found, k);
-  };
-  constexpr std::array<std::pair<int, int>, 4> steps = {{{0, 1}, {1, 0}, {1, -1}, {1, 1}}};
-  for (const Index k : given.touching) {
-    const DotIndex d = layout.dot_at(k);
-    const bool inner = d.row > 0 && d.col > 0 && d.row + 1 < layout.rows && d.col + 1 < layout.cols;
-    if (!inner || !is_finite(at(now, k))) {
-      continue;
-    }
-    Point2<S> sum = {S(0), S(0)};
-    double weight = mean.weights.self;
-    for (const auto& [down, right] : steps) {
-      const Point2<S> off =
-          placed(d, down, right) + placed(d, -down, -right) - S(2) * at(given.found, k);
-      if (is_distance_sq(squared_norm(off))) {
-        const double w = down == 0 || right == 0 ? mean.weights.side : mean.weights.diagonal;
-        sum += S(w) * off;
-        weight += 2 * w;
-      }
-    }
-    at(now, k) += sum / S(weight);
-  }
-}
-
-}  // namespace detail::stick
 }  // namespace v0
 }  // namespace fingerpad

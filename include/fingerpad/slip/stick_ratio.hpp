@@ -77,7 +77,6 @@ inline void expects_valid(const StickTest& test) {
 ///   Reference  UpdatedReference  a stored frame far enough back
 ///   Denoising  ResidualMean      use it for dots found by a camera
 ///              NoDenoising       use it when their noise is far below `slip`
-/// published/stick_ratio.hpp has the printed forms of these policies, and the whole printed method.
 /// Threads may share one estimator, each with its own state. A frame allocates nothing, throws
 /// nothing, and takes O(rows cols) time, plus O(dots in contact) for each stored frame that it
 /// examines; at most `capacity` frames are stored.

@@ -4,7 +4,7 @@
 // The steps of the stick ratio and the policies of each step: the reference frame, the motion of
 // the object since then, and the dots that have followed it. Source: Ito, Kim, Obinata, "Robust
 // slippage degree estimation based on reference update of vision-based tactile sensor", the talk
-// with its backup slides. Printed forms: published/stick_ratio.hpp.
+// with its backup slides.
 #include <array>
 #include <cmath>
 #include <cstddef>
