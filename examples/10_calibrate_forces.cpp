@@ -94,8 +94,7 @@ struct Normal {
 /// Compensates for displacement and rotation if that reduces the error for loads left out.
 Normal fit_normal(Samples samples, const Measure& by) {
   const auto fitted = [&](bool compensated) {
-    fingerpad::FitOptions options;
-    options.displaced = options.rotated = compensated;
+    const fingerpad::CurveOptions options{.displaced = compensated, .rotated = compensated};
     const auto fit = [&](Samples some) {
       return fingerpad::fit_normal_force<curve_degree>(some, options);
     };

@@ -189,7 +189,7 @@ template <int Degree>
 void add_normal(const std::string& name,
                 ContactMeasure measure,
                 const Pairs& pairs,
-                const FitOptions& options = {}) {
+                const CurveOptions& options = {}) {
   const auto fit = [=](const Samples& samples) {
     return fit_normal_force<Degree>(span_of(samples), options);
   };

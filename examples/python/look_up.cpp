@@ -15,6 +15,7 @@
 namespace python {
 namespace {
 
+using fingerpad::CurveOptions;
 using fingerpad::FitOptions;
 using fingerpad::Point2;
 using Curve = fingerpad::PolynomialForce<3>;
@@ -71,6 +72,7 @@ NormalFit fit_normal_force(const Array& measure,
                            const Array& normal_force_n,
                            const Array& displacement_mm,
                            const Array& rotation_rad,
+                           const CurveOptions& curve,
                            const FitOptions& options) {
   Samples samples = samples_of(measure);
   fill(samples, normal_force_n, "normal_force_n", 1,
@@ -84,7 +86,8 @@ NormalFit fit_normal_force(const Array& measure,
     fill(samples, rotation_rad, "rotation_rad", 1,
          [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
   }
-  return without_lock([&] { return fingerpad::fit_normal_force<3, double>(samples, options); });
+  return without_lock(
+      [&] { return fingerpad::fit_normal_force<3, double>(samples, curve, options); });
 }
 
 ShearFit fit_tangential_force(const Array& measure,
@@ -192,14 +195,13 @@ void bind_results(py::module_& module) {
 void bind_normal_force_fit(py::module_& module) {
   bind_options<FitOptions>(module, "FitOptions", "Options of force fits; see calibrate/fit.hpp.")
       .def_readwrite("robust", &FitOptions::robust)
-      .def_readwrite("threshold", &FitOptions::threshold)
-      .def_readwrite("passes", &FitOptions::passes)
-      .def_readwrite("min_independence", &FitOptions::min_independence)
-      .def_readwrite("min_explained", &FitOptions::min_explained)
-      .def_readwrite("through_zero", &FitOptions::through_zero)
-      .def_readwrite("rising", &FitOptions::rising)
-      .def_readwrite("displaced", &FitOptions::displaced)
-      .def_readwrite("rotated", &FitOptions::rotated);
+      .def_readwrite("min_explained", &FitOptions::min_explained);
+  bind_options<CurveOptions>(module, "CurveOptions",
+                             "What fit_normal_force fits; see calibrate/force.hpp.")
+      .def_readwrite("through_zero", &CurveOptions::through_zero)
+      .def_readwrite("rising", &CurveOptions::rising)
+      .def_readwrite("displaced", &CurveOptions::displaced)
+      .def_readwrite("rotated", &CurveOptions::rotated);
   py::class_<NormalFit>(module, "NormalForceFit", "A fitted curve; NormalForce(fit) looks it up.")
       .def_property_readonly("ok", &NormalFit::ok)
       .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
@@ -245,10 +247,10 @@ void bind_fits(py::module_& module) {
   module.def(
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
       py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
-      py::arg("options") = FitOptions(),
+      py::arg("curve") = CurveOptions(), py::arg("options") = FitOptions(),
       "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/force.hpp.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
-      "displacement_mm: (n, 2), rotation_rad: (n,), for FitOptions(displaced=True,\n"
+      "displacement_mm: (n, 2), rotation_rad: (n,), for CurveOptions(displaced=True,\n"
       "rotated=True). NaN: not measured.");
   module.def("fit_tangential_force", &fit_tangential_force, py::arg("measure"),
              py::arg("displacement_mm"), py::arg("tangential_force_n"), py::arg("reference"),

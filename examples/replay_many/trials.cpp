@@ -285,7 +285,7 @@ Trial normal_force() {
 
 Trial robust_normal_force() {
   const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), robust);
+    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), {}, robust);
     return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
                     block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
   };

@@ -41,15 +41,15 @@ std::vector<ForceSample<double>> any_samples(Input& in) {
 void try_forces(Input& in) {
   const auto given = any_samples(in);
   const std::span<const ForceSample<double>> samples(given);
-  FitOptions options;
-  options.robust = in.flag();
-  options.displaced = in.flag();
-  options.rotated = in.flag();
-  options.through_zero = in.flag();
-  options.rising = in.flag();
+  const FitOptions options{.robust = in.flag()};
+  CurveOptions curve;
+  curve.displaced = in.flag();
+  curve.rotated = in.flag();
+  curve.through_zero = in.flag();
+  curve.rising = in.flag();
   switch (in.whole(0, 4)) {
     case 0: {
-      const auto fit = fit_normal_force<2>(samples, options);
+      const auto fit = fit_normal_force<2>(samples, curve, options);
       require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a curve is finite");
       return;
     }

@@ -36,7 +36,7 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_divergence(
     sample.normal_force_n = forces_n[k];
     samples.push_back(sample);
   }
-  auto fit = fit_normal_force<Degree, S>(samples, options);
+  auto fit = fit_normal_force<Degree, S>(samples, {}, options);
   S noise_n2 = S(0);
   for (const auto& residual : fit.residuals) {
     const DivergenceResult<S>& d = divergences[residual.sample];

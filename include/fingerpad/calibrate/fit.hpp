@@ -12,31 +12,17 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Options of the fits, and limits below which samples are refused.
+/// Options of the fits of forces.
 struct FitOptions {
-  bool robust = false;             ///< Huber's loss: outliers weigh less
-  double threshold = 1.345;        ///< of Huber's loss, in standard deviations of a sample, > 0
-  int passes = 100;                ///< steps at most, >= 2
-  double min_independence = 1e-5;  ///< refuses parameters with a smaller independent fraction of
-                                   ///< information; in (0, 1)
-  double min_explained = 0.9;      ///< refuses samples as contradictory if the model explains a
-                                   ///< smaller share of the variance about the mean; in [0, 1)
-  // only for fit_normal_force
-  bool through_zero = true;  ///< no force without contact; the published curves lack this
-  bool rising = true;        ///< the force never falls from 0 to the largest measure
-  bool displaced = false;    ///< also fits the compensation for displacement
-  bool rotated = false;      ///< also fits the compensation for rotation
+  bool robust = false;         ///< Huber's loss: outliers weigh less
+  double min_explained = 0.9;  ///< refuses samples as contradictory if the model explains a smaller
+                               ///< share of the variance about the mean; in [0, 1)
 };
 
 /// Says which option has no meaning; "" if all have one.
 inline std::string check(const FitOptions& o) {
   return check("FitOptions",
-               {{"threshold", o.threshold, positive},
-                {"passes", o.passes, at_least(2)},
-                {"min_independence",
-                 o.min_independence,
-                 {.min = 0, .max = 1, .above_min = true, .below_max = true}},
-                {"min_explained", o.min_explained, {.min = 0, .max = 1, .below_max = true}}});
+               {{"min_explained", o.min_explained, {.min = 0, .max = 1, .below_max = true}}});
 }
 
 /// A fit that is not ok() says in its field `cause` what is likely wrong; nullptr if it is ok.

@@ -173,15 +173,24 @@ struct [[nodiscard]] LinearShearFit {
   bool ok() const { return cause == nullptr; }
 };
 
+/// What fit_normal_force fits.
+struct CurveOptions {
+  bool through_zero = true;  ///< no force without contact; the published curves lack this
+  bool rising = true;        ///< the force never falls from 0 to the largest measure
+  bool displaced = false;    ///< also the compensation for displacement
+  bool rotated = false;      ///< also the compensation for rotation
+};
+
 /// Normal force from area or depth: least-squares fit of F = P(measure) (1 + a |d|^2 + b theta^2)
 /// with a polynomial P of degree `Degree`. Uses the samples with a measure > 0 and a normal force.
 /// Allocates; O(passes samples Degree^2).
 template <int Degree = 2, scalar S = double>
 NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const ForceSample<S>> samples,
+                                                            const CurveOptions& curve = {},
                                                             const FitOptions& options = {}) {
   using Fit = detail::ModelFit<S>;
   const char* const owner = "fit_normal_force";
-  const bool moved = options.displaced || options.rotated;
+  const bool moved = curve.displaced || curve.rotated;
   const auto usable = detail::usable_samples(samples, [&](const ForceSample<S>& s) {
     return is_finite(s.normal_force_n) && (!moved || detail::has_finite_motion(s));
   });
@@ -197,14 +206,14 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
     to = value(s.measure) > value(to) ? s.measure : to;
   }
   expects(value(to) > value(from), owner, "largest measure", to, "> the smallest");
-  detail::PolynomialTerms terms{{}, options.displaced, options.rotated};
-  for (std::size_t k = options.through_zero ? 1 : 0; k <= static_cast<std::size_t>(Degree); ++k) {
+  detail::PolynomialTerms terms{{}, curve.displaced, curve.rotated};
+  for (std::size_t k = curve.through_zero ? 1 : 0; k <= static_cast<std::size_t>(Degree); ++k) {
     terms.columns.push_back(k);
   }
   Fit fit = detail::fit_columns<Degree>(contacts, forces, to, terms, options);
-  const bool held = options.rising && !detail::rises(fit, terms);
+  const bool held = curve.rising && !detail::rises(fit, terms);
   const char* const mistake =
-      options.through_zero && !held
+      curve.through_zero && !held
           ? detail::offset_in<Degree>(contacts, forces, to, terms, options, fit)
           : nullptr;
   if (held) {
@@ -213,7 +222,7 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
     detail::expects_explained(fit, options, owner, detail::cause_of(mistake).c_str());
   }
   auto result = detail::polynomial_of<NormalForceFit<PolynomialForce<Degree, S>>>(
-      fit, detail::PolynomialModel<Degree, S>(contacts, to, terms), options);
+      fit, detail::PolynomialModel<Degree, S>(contacts, to, terms), terms);
   result.curve.from = from;
   result.curve.to = to;
   result.held_rising = held;
@@ -222,8 +231,7 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   result.explained = fit.explained;
   result.largest_residual_sds = fit.worst_sds;
   const char* const units = detail::unit_mistake(
-      usable.samples,
-      {.normal = true, .displacement = options.displaced, .rotation = options.rotated});
+      usable.samples, {.normal = true, .displacement = curve.displaced, .rotation = curve.rotated});
   result.cause = detail::cause_in(fit, units, mistake, options);
   return result;
 }

@@ -97,12 +97,14 @@ class ModelFitter {
               std::vector<std::string> names,
               const Vector& measured,
               const FitModel<S>& model,
-              const FitOptions& options)
+              const FitOptions& options,
+              double min_independence = 1e-5)
       : owner_(owner),
         names_(std::move(names)),
         measured_(measured),
         model_(model),
-        options_(options) {
+        options_(options),
+        min_independence_(min_independence) {
     require(options);
     const Index count = static_cast<Index>(names_.size());
     expects(measured.size() > count, owner, "usable samples",
@@ -116,7 +118,7 @@ class ModelFitter {
     fit.weights = Vector::Constant(measured_.size(), S(1));
     Vector values(measured_.size());
     Matrix jacobian(measured_.size(), start.size());
-    for (int pass = 0; pass < options_.passes && !fit.converged; ++pass) {
+    for (int pass = 0; pass < max_passes && !fit.converged; ++pass) {
       model_.fill(fit.parameters, values, jacobian);
       fit.residuals = measured_ - values;
       reweigh(pass, fit);
@@ -129,12 +131,15 @@ class ModelFitter {
   }
 
  private:
+  static constexpr int max_passes = 100;
+  static constexpr double huber_threshold = 1.345;  // in standard deviations of a sample
+
   /// Huber's weights, from the second pass on.
   void reweigh(int pass, Fit& fit) const {
     if (!options_.robust || pass == 0) {
       return;
     }
-    const S limit = S(options_.threshold) * robust_sd(fit.residuals, fit.parameters.size());
+    const S limit = S(huber_threshold) * robust_sd(fit.residuals, fit.parameters.size());
     for (Index i = 0; i < fit.residuals.size(); ++i) {
       const S size = fit.residuals(i) < S(0) ? S(-fit.residuals(i)) : fit.residuals(i);
       fit.weights(i) = limit < size ? limit / size : S(1);
@@ -183,8 +188,8 @@ class ModelFitter {
       const S share = qr.diagonal(k) < S(0) ? S(-qr.diagonal(k)) : S(qr.diagonal(k));
       const std::string name =
           "information in the samples on " + names_[static_cast<std::size_t>(k)];
-      expects(S(options_.min_independence) < share, owner_, name.c_str(), share,
-              "> min_independence: they are too few, too alike or tied to each other");
+      expects(S(min_independence_) < share, owner_, name.c_str(), share,
+              "> 1e-5: they are too few, too alike or tied to each other");
     }
   }
 
@@ -219,6 +224,8 @@ class ModelFitter {
       inverse.row(k) /= lengths(k);
     }
     fit.covariance = variance * inverse.lazyProduct(inverse.transpose());
+    const S sum = fit.covariance.trace();
+    expects(is_finite(sum), owner_, "variance of the parameters", sum, "finite");
   }
 
   const char* owner_;
@@ -226,6 +233,7 @@ class ModelFitter {
   const Vector& measured_;
   const FitModel<S>& model_;
   FitOptions options_;
+  double min_independence_;  // of a parameter; below it the samples say nothing on it
 };
 
 /// Refuses a model that does not explain the samples; `cause` is the likely cause.

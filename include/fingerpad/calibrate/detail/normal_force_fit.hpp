@@ -256,10 +256,8 @@ const char* offset_in(const std::vector<PressedContact<S>>& samples,
   const PolynomialModel<Degree, S> model(samples, to, with);
   typename ModelFit<S>::Vector start(through_zero.parameters.size() + 1);
   start << S(0), through_zero.parameters;
-  FitOptions any = options;
-  any.min_independence = static_cast<double>(epsilon<S>());
-  const ModelFit<S> fit =
-      ModelFitter<S>("fit_normal_force", model.names(), forces, model, any)(start);
+  const ModelFit<S> fit = ModelFitter<S>("fit_normal_force", model.names(), forces, model, options,
+                                         static_cast<double>(epsilon<S>()))(start);
   S largest_sq = S(0);
   for (Index i = 0; i < forces.size(); ++i) {
     const S force_sq = square(forces(i));
@@ -274,7 +272,7 @@ const char* offset_in(const std::vector<PressedContact<S>>& samples,
 template <class Result, int Degree, scalar S>
 Result polynomial_of(const ModelFit<S>& fit,
                      const PolynomialModel<Degree, S>& model,
-                     const FitOptions& options) {
+                     const PolynomialTerms& terms) {
   using std::sqrt;
   using Matrix = typename ModelFit<S>::Matrix;
   Result result;
@@ -290,12 +288,12 @@ Result polynomial_of(const ModelFit<S>& fit,
     }
   }
   Index next = columns;
-  if (options.displaced) {
+  if (terms.displaced) {
     result.compensation.per_mm_sq = fit.parameters(next);
     result.per_mm_sq_sd = sqrt(fit.covariance(next, next));
     ++next;
   }
-  if (options.rotated) {
+  if (terms.rotated) {
     result.compensation.per_rad_sq = fit.parameters(next);
     result.per_rad_sq_sd = sqrt(fit.covariance(next, next));
   }
