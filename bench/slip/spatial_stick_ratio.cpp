@@ -131,8 +131,7 @@ struct OnScenes {
     auto state = ratio.start();
     const FrictionLimit<double> friction;
     auto friction_state = friction.start();
-    const published::FrictionRatio<double> published;
-    auto published_state = published.start();
+    published::FrictionRatio<double> published;
     test::Image<DotState> states(across, across);
     for (Index k = 0; k < scene.size(); ++k) {
       const Dots seen = noisy(scene[k].dots, 0.005, 0.025, random);
@@ -142,7 +141,7 @@ struct OnScenes {
                        test::noisy(scene[k].moment_n_mm, 0.02, random), seen, scene[k].contact);
       const auto slip = friction(load, r, friction_state);
       const bool slides = r.updated() && r.stick_ratio < 0.1;
-      const auto held = published(load.tangential_n, load.normal_n, slides, published_state);
+      (void)published(load.tangential_n, load.normal_n, slides);
       if (k < 2 || test::dots_of_both(scene[k], scene[k]) < 6) {
         continue;
       }
@@ -151,7 +150,7 @@ struct OnScenes {
       fused.push_back((is_finite(slip.stick_ratio) ? slip.stick_ratio : 1) - truth);
       if (is_dragged_plate) {
         limit.push_back(slip.limit / friction_coefficient - 1);
-        remembered_ratio.push_back(held.remembered_ratio / friction_coefficient - 1);
+        remembered_ratio.push_back(published.mu_0() / friction_coefficient - 1);
       }
     }
   }
@@ -200,9 +199,8 @@ void add_scenes() {
       });
   add_on_scenes(
       "and published: FrictionRatio",
-      [friction = published::FrictionRatio<double>(),
-       state = published::FrictionRatio<double>().start()](const auto& r) mutable {
-        return friction(1.0, 5.0, r.updated() && r.stick_ratio < 0.1, state);
+      [friction = published::FrictionRatio<double>()](const auto& r) mutable {
+        return friction(1.0, 5.0, r.updated() && r.stick_ratio < 0.1);
       },
       [](auto& counters) {
         bench::note_errors(counters, "limit", "share", on_scenes().remembered_ratio);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // The printed forms on any input: what they tell is finite, and the same frame gives the same bits.
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "fingerpad/published/contact_region.hpp"
@@ -124,16 +125,13 @@ void try_motion(Input& in) {
 }
 
 void try_friction(Input& in) {
-  published::FrictionTest<double> test;
-  test.alarm_fraction = in.number(0, 1);
-  test.min_normal_n = in.number(0, 1);
-  const published::FrictionRatio<double> estimate(test);
-  auto state = estimate.start();
+  published::FrictionRatio<> estimate;
   for (Index frames = in.whole(1, 20); frames > 0; --frames) {
-    const Point3<double> force_n = {in.number(-10, 10), in.number(-10, 10), in.number(-20, 1)};
-    const bool sliding = in.flag();
-    const auto seen = fuzz::frame([&] { return estimate(force_n, sliding, state); });
-    require(!seen.ok() || seen.ratio >= 0, "a ratio of friction is not negative");
+    const double tangential_n = in.number(-10, 10), normal_n = in.number(-20, 20);
+    const bool slips = in.flag();
+    const double margin = fuzz::frame([&] { return estimate(tangential_n, normal_n, slips); });
+    require(!(margin > 1), "a margin is at most 1");
+    require(std::isnan(estimate.mu_0()) || estimate.mu_0() > 0, "a stored ratio is positive");
   }
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/grip_control.hpp"
 
-#include "fingerpad/published/friction_ratio.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 
@@ -21,19 +20,5 @@ TEST_CASE("grip control: nothing allocates", "[grip_control]") {
   }
   const long after = test::allocations();
   CHECK(force_n > 0);
-  CHECK(after == before);
-}
-
-TEST_CASE("friction ratio: nothing allocates", "[friction_ratio]") {
-  const long before = test::allocations();
-  const published::FrictionRatio<double> friction;
-  auto state = friction.start();
-  bool alarm = false;
-  for (int k = 0; k < 300; ++k) {
-    const Point2<double> force{0.01 * k, k % 11 == 0 ? not_a_number<double>() : 0.3};
-    alarm = friction(force, 0.01 * (k - 5), k % 50 == 20, state).alarm || alarm;
-  }
-  const long after = test::allocations();
-  CHECK(alarm);
   CHECK(after == before);
 }
