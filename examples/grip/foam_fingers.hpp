@@ -55,7 +55,7 @@ class FoamFingers {
       finger.center_y_mm = place(random_);
       finger.slip_mm.assign(taxels(), 0.0);
       finger.load_n.assign(taxels(), 0.0);
-      finger.oscillators.assign(taxels(), hold_.start());
+      finger.oscillators.assign(taxels(), {});
       finger.readings.assign(taxels(), 0.0);
     }
     for (int k = 0; k < 100; ++k) {  // let it come to rest
@@ -112,7 +112,7 @@ class FoamFingers {
     double slipped_mm = 0;        // in this sample, the largest
     std::vector<double> slip_mm;  // of the object over each taxel
     std::vector<double> load_n;   // on each oscillator
-    std::vector<fingerpad::FirstOrderHold<>::State> oscillators;
+    std::vector<fingerpad::MassSpringDamper<>::Motion> oscillators;
     std::vector<double> readings;
   };
 
@@ -149,8 +149,9 @@ class FoamFingers {
       finger.slip_mm[k] += slipped;
       finger.slipped_mm = std::max(finger.slipped_mm, normal[k] > 0 ? slipped : 0.0);
       const double load = normal[k] > 0 ? setup_.drag_n_s_per_mm * slipped * setup_.rate_hz : 0.0;
-      const double shakes = setup_.oscillator.stiffness_n_per_mm *
-                            hold_(finger.load_n[k], load, finger.oscillators[k]).position_mm;
+      auto& oscillator = finger.oscillators[k];
+      oscillator = hold_(finger.load_n[k], load, oscillator);
+      const double shakes = setup_.oscillator.stiffness_n_per_mm * oscillator.position_mm;
       finger.load_n[k] = load;
       const double felt = normal[k] > 0 ? normal[k] + shakes : 0.0;
       finger.readings[k] =

@@ -46,7 +46,6 @@
 #include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/sim/elastic_gel.hpp"
-#include "fingerpad/sim/foam_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
@@ -66,4 +65,5 @@
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/printed_iteration.hpp"
 #include "fingerpad/published/wrench.hpp"
+#include "fingerpad/sim/foam_contact.hpp"
 #endif

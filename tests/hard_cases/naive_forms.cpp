@@ -53,13 +53,8 @@ const std::vector<Bounds> stick = {
     {hard::nothing_moved, none, none, 0, 0},
 };
 const std::vector<Bounds> foam = {
-    {hard::critical_damping, none, none, 2e-7, 1.5e-15},
-    {hard::strong_damping, 1, 1e-5, 2e-7, 1e-15},
-    {hard::long_swing, 1e-4, 1e-13, 2e-7, 1e-15},
-    {hard::long_times, none, none, 3e-7, 6e-16},
-    {hard::many_steps, 1e-4, 2e-13, 2e-7, 1e-15},
+    {hard::long_times, none, none, 1.2e-6, 2.6e-15},
     {hard::short_step, 0.5, 1e-5, 2e-7, 5e-16},
-    {hard::short_creep, 1, 1, 3e-7, 8e-16},
     {hard::no_load, none, none, 2e-6, 2e-15},
 };
 const std::vector<Bounds> look_up = {
