@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # The optional components and the libraries that they need. The build and the installed package both
 # read this file.
-set(fingerpad_COMPONENTS dot_finder eigen mdspan opencv xtensor)
+set(fingerpad_COMPONENTS dot_finder eigen gel mdspan opencv xtensor)
 
 # Finds the library of a component. Sets fingerpad_<name>_FOUND, fingerpad_<name>_LIBRARY to link,
 # and fingerpad_<name>_NEEDS, the library's name for messages.
@@ -20,6 +20,11 @@ macro(fingerpad_find_component name)
     set(fingerpad_eigen_FOUND ${Eigen3_FOUND})
     set(fingerpad_eigen_LIBRARY Eigen3::Eigen)
     set(fingerpad_eigen_NEEDS "Eigen 3.4")
+  elseif("${name}" STREQUAL "gel") # contact of gel pads
+    find_package(OpenCV QUIET COMPONENTS core imgproc)
+    set(fingerpad_gel_FOUND ${OpenCV_FOUND})
+    set(fingerpad_gel_LIBRARY opencv_core opencv_imgproc)
+    set(fingerpad_gel_NEEDS "OpenCV")
   elseif("${name}" STREQUAL "mdspan")
     set(fingerpad_mdspan_FOUND TRUE) # any mdspan of the user: nothing is included
   elseif("${name}" STREQUAL "opencv")

@@ -16,11 +16,12 @@
 #include <vector>
 
 #include "chain/pressed_frames.hpp"
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/force/traction.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
@@ -161,39 +162,38 @@ std::vector<Kind> of_contact_region() {
 
 std::vector<Kind> of_gel(bool with_slide) {
   static const test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04};
-  static const auto usual = made<test::ColourFrame>([](int k, test::Random& random) {
-    GelContact<> contact(GelPad{});
+  static const auto usual = made<cv::Mat>([](int k, test::Random& random) {
+    test::BallOnGel<> contact(test::GelPad{});
     contact.drag(0.5, {0.05 * k, 0.02 * k});
-    return camera.frame(contact, random);
+    return test::mat_of(camera.frame(contact, random));
   });
-  static const auto noisy = made<test::ColourFrame>([](int, test::Random& random) {
-    test::ColourFrame frame(480, 640);
-    for (auto& pixel : frame.cells) {
+  static const auto noisy = made<cv::Mat>([](int, test::Random& random) {
+    cv::Mat_<cv::Vec3b> frame(480, 640);
+    for (cv::Vec3b& pixel : frame) {
       pixel = {static_cast<std::uint8_t>(random.whole(0, 255)),
                static_cast<std::uint8_t>(random.whole(0, 255)),
                static_cast<std::uint8_t>(random.whole(0, 255))};
     }
-    return frame;
+    return cv::Mat(frame);
   });
-  static const auto region = [] {
+  static auto gel = [] {
     test::Random random(99);
-    return ContactByDifference<>(std::vector{camera.frame(GelContact<>(GelPad{}), random)});
+    const test::BallOnGel<> nothing(test::GelPad{});
+    return GelContact(std::vector{test::mat_of(camera.frame(nothing, random))});
   }();
-  static auto work = region.workspace();
-  static Image<std::uint8_t> mask(480, 640);
   static const auto dots = made<test::GelDots>([](int k, test::Random& random) {
-    GelContact<> contact(GelPad{});
+    test::BallOnGel<> contact(test::GelPad{});
     contact.drag(0.5, {0.05 * k, 0.02 * k});
     return camera.dots(contact, random);
   });
-  static const ContactSlide<> slide(work.difference().rows(), work.difference().cols(),
-                                    dots[0].rows(), dots[0].cols());
+  static const ContactSlide<> slide(gel.mask().rows, gel.mask().cols, dots[0].rows(),
+                                    dots[0].cols());
   static auto state = slide.start();
-  const auto call = [with_slide](const std::vector<test::ColourFrame>& frames) {
+  const auto call = [with_slide](const std::vector<cv::Mat>& frames) {
     return [&frames, with_slide](int k) {
-      (void)region(frames[variant(k)], mask, work);
+      (void)gel(frames[variant(k)]);
       if (with_slide) {
-        (void)slide(work.imprint(), work.contact(), dots[variant(k)], state);
+        (void)slide(gel.imprint(), gel.mask(), dots[variant(k)], state);
       }
     };
   };
@@ -330,8 +330,8 @@ int main(int argc, char** argv) {
   add("whole chain, least squares", of_chain<chain::WithLeastSquares>());
   add("depth, every pixel", of_depth());
   add("contact region, every pixel", of_contact_region());
-  add("contact by difference", of_gel(false));
-  add("contact by difference and slide", of_gel(true));
+  add("gel contact", of_gel(false));
+  add("gel contact and slide", of_gel(true));
   add("stick ratio in the image, 441 dots", of_stick_in_the_image());
   add("stick ratio in space, 441 dots", of_stick_in_space());
   add("traction, 21 x 21 dots", of_traction());

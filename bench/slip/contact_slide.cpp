@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/support/run.hpp"
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "support/gel_frames.hpp"
 
 using namespace fingerpad;
@@ -30,23 +30,16 @@ struct Frame {
 std::vector<Frame> recording(std::uint64_t seed) {
   const test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04};
   test::Random random(seed);
-  GelContact<> contact(GelPad{});
-  const std::vector free = {camera.frame(contact, random)};
-  const ContactByDifference<> region(free);
-  auto workspace = region.workspace();
-  Image<std::uint8_t> mask(480, 640);
+  test::BallOnGel<> contact(test::GelPad{});
+  GelContact gel(std::vector{test::mat_of(camera.frame(contact, random))});
   const double angle = random.uniform(0, 6.28);
   std::vector<Frame> frames;
   for (int k = 0; k < 12; ++k) {
     contact.drag(1.2, {0.2 * k * std::cos(angle), 0.2 * k * std::sin(angle)});
     Frame& frame = frames.emplace_back();
-    (void)region(camera.frame(contact, random), mask, workspace);
-    for (Index i = 0; i < 120; ++i) {
-      for (Index j = 0; j < 160; ++j) {
-        frame.imprint(i, j) = workspace.imprint()(i, j);
-        frame.contact(i, j) = workspace.contact()(i, j) > 0;
-      }
-    }
+    (void)gel(test::mat_of(camera.frame(contact, random)));
+    std::copy(gel.imprint().begin(), gel.imprint().end(), frame.imprint.cells.begin());
+    std::copy(gel.mask().begin(), gel.mask().end(), frame.contact.cells.begin());
     frame.dots = camera.dots(contact, random);
     frame.ball_px = camera.px_of(contact.ball_mm());
   }

@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOMS = {  # in the order in which a frame goes through them
     "pipeline": "Whole sensors", "depth": "Depth", "contact": "Contact", "motion": "Motion",
-    "slip": "Slip", "force": "Force", "foam": "Foam", "calibrate": "Calibration",
+    "slip": "Slip", "gel": "Gels", "force": "Force", "foam": "Foam", "calibrate": "Calibration",
     "published": "As published", "optics": "Optics", "sim": "Test signals", "adapt": "Adapters",
     "image": "Pixel kernels", "math": "Mathematics", "core": "Vocabulary",
 }

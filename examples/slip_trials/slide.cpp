@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "replay/gel/slide_step.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/median.hpp"
@@ -16,8 +16,6 @@ namespace slip_trials {
 namespace {
 
 using replay::DotGrid;
-using Colours = cv::Mat_<cv::Vec3b>;
-using Contact = fingerpad::ContactByDifference<3>;
 
 constexpr std::size_t free_count = 3;  // number of candidates that agree best
 constexpr double gone = 0.1;  // share of the largest area so far, below which contact is lost
@@ -31,25 +29,12 @@ cv::Mat last_frame(const std::filesystem::path& folder) {
 
 /// RMS difference of `other` from `free` over the frame.
 double difference(const cv::Mat& free, const cv::Mat& other) {
-  const Contact contact(std::vector<Colours>{free});
-  auto workspace = contact.workspace();
-  cv::Mat_<std::uint8_t> mask(free.size());
-  const Colours frame = other;
-  if (!contact(frame, mask, workspace).accepted()) {
+  fingerpad::GelContact contact(std::vector{free});
+  if (contact(other).status == fingerpad::FrameStatus::refused) {
     return std::numeric_limits<double>::infinity();
   }
-  double sum = 0;
-  double count = 0;
-  const auto cells = workspace.difference();
-  for (fingerpad::Index i = 0; i < cells.rows(); ++i) {
-    for (fingerpad::Index j = 0; j < cells.cols(); ++j) {
-      if (std::isfinite(cells(i, j))) {
-        sum += static_cast<double>(cells(i, j)) * static_cast<double>(cells(i, j));
-        ++count;
-      }
-    }
-  }
-  return std::sqrt(sum / count);
+  const cv::Mat known = contact.difference() == contact.difference();  // not NaN
+  return cv::norm(contact.difference(), cv::NORM_L2, known) / std::sqrt(cv::countNonZero(known));
 }
 
 std::vector<cv::Mat> last_frames(const Trial& trial, const std::vector<Trial>& trials) {
@@ -115,7 +100,7 @@ SlideSeries slide_in(const std::vector<cv::Mat>& frames,
   cv::Mat_<std::uint8_t> mask(frames.front().size());
   SlideSeries series;
   series.end = frames.size();
-  fingerpad::Index largest = 0;
+  int largest = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto seen = step(frames[k], dots[k], mask);
     series.slide.push_back(static_cast<double>(seen.slide.slide));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Slip from the imprint, frame by frame: contact by difference from frames of the free pad, and its
+// Slip from the imprint, frame by frame: contact by comparison with frames of the free pad, and its
 // slide past the dots.
 #include <opencv2/core.hpp>
 #include <string>

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but the adapters, which bring their libraries with them (see adapt/). What needs Eigen
-// is here where Eigen is found: the six-axis force, the whole fingertip, fits of light and forces.
+// Everything but what brings OpenCV or xtensor with it (adapt/, gel/gel_contact.hpp). What needs
+// Eigen is here where Eigen is found: the six-axis force, the whole fingertip, fits of light and
+// forces.
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
@@ -10,11 +11,10 @@
 #include "fingerpad/calibrate/preslip.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/taxels.hpp"
-#include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -45,7 +45,6 @@
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
-#include "fingerpad/sim/elastic_gel.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"

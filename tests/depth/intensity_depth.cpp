@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/depth/intensity_depth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/core.hpp>
+#include <vector>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/surface.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -64,7 +67,7 @@ struct BallSeen {
   Image<double> depth_mm{PressedBall::rows, PressedBall::cols};
   Image<double> height_mm = depth_mm;
   Image<Touch> contact{PressedBall::rows, PressedBall::cols};
-  ContactResult found;
+  GelResult found;
 };
 
 }  // namespace
@@ -172,16 +175,26 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     PressedBall ball;
     const auto free = ball.frame(false, {0, 0});
     IntensityDepth<double> depth(free, ball.law);
-    const ContactByDifference<1, double> region(
-        std::vector{free, ball.frame(false, {0, 0})},
+    const auto mat_of = [](const Image<std::uint8_t>& image) {
+      cv::Mat mat(int(image.rows()), int(image.cols()), CV_8UC1);
+      std::copy(image.cells.begin(), image.cells.end(), mat.data);
+      return mat;
+    };
+    GelContact gel(
+        std::vector{mat_of(free), mat_of(ball.frame(false, {0, 0}))},
         {.cell_px = 2, .smoothing_px = 2, .dot_px = 0, .max_gap_px = 8, .min_region_px = 100});
-    auto region_workspace = region.workspace();
     const auto see = [&](const Point2<double>& way_px) {
       const auto frame = ball.frame(true, way_px);
       BallSeen seen;
       RC_ASSERT(depth(frame, seen.depth_mm).ok());
-      seen.found = region(frame, seen.contact, region_workspace);
+      seen.found = gel(mat_of(frame));
       RC_ASSERT(seen.found.ok());
+      for (Index i = 0; i < PressedBall::rows; ++i) {
+        for (Index j = 0; j < PressedBall::cols; ++j) {
+          const bool touches = gel.mask()(int(i / 2), int(j / 2)) != 0;
+          seen.contact(i, j) = touches ? Touch::contact : Touch::none;
+        }
+      }
       for (std::size_t k = 0; k < seen.depth_mm.cells.size(); ++k) {
         seen.height_mm.cells[k] = PressedBall::gel_mm - seen.depth_mm.cells[k];
       }
@@ -191,7 +204,7 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     const double radius_px = std::sqrt(double(before.found.contact_px) / 3.14159265358979);
     // where the frame differs enough; the mean over 2 px extends beyond the contact
     RC_LOG() << radius_px << " px for " << ball.contact_px << "\n";
-    const double dark = -ball.law.linear_mm * std::log(1 - region.threshold());
+    const double dark = -ball.law.linear_mm * std::log(1 - gel.threshold());
     RC_ASSERT(ball.depth_mm(radius_px + 2) < dark);
     RC_ASSERT(radius_px < ball.contact_px + 2);
 

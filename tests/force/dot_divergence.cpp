@@ -6,14 +6,16 @@
 #include <vector>
 
 #include "fingerpad/calibrate/dot_divergence.hpp"
-#include "fingerpad/sim/elastic_gel.hpp"
 #include "support/catch.hpp"
+#include "support/elastic_gel.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
 using namespace fingerpad;
+using test::BallOnGel;
+using test::GelPad;
 using test::Image;
 using test::Random;
 using test::uniform;
@@ -31,8 +33,8 @@ struct Gel {
   Index across = 15;
   Point ball_mm = {0, 0};
 
-  Dots free() const { return moved(GelContact<>(pad, ball_mm)); }
-  Dots moved(const GelContact<>& contact) const {
+  Dots free() const { return moved(BallOnGel<>(pad, ball_mm)); }
+  Dots moved(const BallOnGel<>& contact) const {
     Dots dots(across, across);
     for (Index i = 0; i < across; ++i) {
       for (Index j = 0; j < across; ++j) {
@@ -45,7 +47,7 @@ struct Gel {
     }
     return dots;
   }
-  Mask touched(const GelContact<>& contact) const {
+  Mask touched(const BallOnGel<>& contact) const {
     const Dots home = free();
     Mask mask(across, across, 0);
     for (std::size_t k = 0; k < mask.cells.size(); ++k) {
@@ -54,8 +56,8 @@ struct Gel {
     }
     return mask;
   }
-  GelContact<> pressed(double force_n) const {
-    GelContact<> contact(pad, ball_mm);
+  BallOnGel<> pressed(double force_n) const {
+    BallOnGel<> contact(pad, ball_mm);
     contact.drag(force_n, ball_mm);
     return contact;
   }
@@ -68,7 +70,7 @@ struct Gel {
   DotDivergence<> divergence() const {
     return DotDivergence<>(free(), {.noise_mm = noise_mm, .free_frames = 10000, .parts = false});
   }
-  DivergenceResult<> seen(const GelContact<>& contact, Random* random = nullptr) const {
+  DivergenceResult<> seen(const BallOnGel<>& contact, Random* random = nullptr) const {
     const auto divergence = this->divergence();
     auto workspace = divergence.workspace();
     Dots dots = moved(contact);

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Gel pads from any frames: contact by difference, its slide, and depth from brightness.
+// Gel pads from any frames: contact, its slide, and depth from brightness.
+// with: -lopencv_core -lopencv_imgproc
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <vector>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fuzz/dots.hpp"
 
@@ -16,61 +19,70 @@ using fuzz::require;
 
 namespace {
 
-DifferenceTest any_test(Input& in) {
-  DifferenceTest test;
-  test.cell_px = in.whole(1, 6);
-  test.smoothing_px = in.number(1, 10);
-  test.dot_px = in.number(0, 12);
-  test.dot_contrast = in.number(0.05, 0.5);
-  test.min_difference = in.number(0.01, 0.2);
-  test.max_gap_px = in.number(0, 20);
-  test.min_region_px = in.whole(0, 200);
-  return test;
+GelOptions any_options(Input& in) {
+  GelOptions options;
+  options.cell_px = static_cast<int>(in.whole(1, 6));
+  options.smoothing_px = in.number(options.cell_px / 2.0, 10);
+  options.dot_px = in.number(0, 12);
+  options.dot_contrast = in.number(0.05, 0.5);
+  options.min_difference = in.number(0.01, 0.2);
+  options.max_gap_px = in.number(0, 20);
+  options.min_region_px = static_cast<int>(in.whole(0, 200));
+  return options;
 }
 
 template <class Pixel>
-void try_slide(Input& in) {
-  const Index rows = in.side(0, 32), cols = in.side(0, 32);
-  const Grid<Pixel> first(in, rows, cols, 50, 250);
+cv::Mat_<Pixel> any_frame(Input& in, int rows, int cols, double scale) {
+  const Grid<Pixel> cells(in, rows, cols, 50 * scale, 250 * scale);
+  cv::Mat_<Pixel> frame(rows, cols);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < cols; ++j) {
+      frame(i, j) = cells.view()(i, j);
+    }
+  }
+  return frame;
+}
+
+/// `scale`: of the grey levels.
+template <class Pixel>
+void try_slide(Input& in, double scale) {
+  const GelOptions options = any_options(in);
+  const int rows = options.cell_px * static_cast<int>(in.whole(3, 32)) + in.flag();
+  const int cols = options.cell_px * static_cast<int>(in.whole(3, 32)) + in.flag();
+  const cv::Mat_<Pixel> first = any_frame<Pixel>(in, rows, cols, scale);
   // two free frames that differ everywhere leave no difference to be seen
-  const Grid<Pixel> second = in.flag() ? first : Grid<Pixel>(in, rows, cols, 50, 250);
-  const std::vector free = {first.view(), second.view()};
-  const ContactByDifference<1> contact(free, any_test(in));
-  auto work = contact.workspace(), fresh = contact.workspace();
-  const auto cells = work.difference();
+  const cv::Mat_<Pixel> second = in.flag() ? first : any_frame<Pixel>(in, rows, cols, scale);
+  const std::vector<cv::Mat> free = {first, second};
+  GelContact gel(free, options), fresh(free, options);
   SlideTest test;
   test.pitch_px = in.number(2, 40);
   test.cell_px = in.number(1, 6);
   test.min_cells = in.whole(30, 60);
-  const ContactSlide<> slide(cells.rows(), cells.cols(), 4, 5, test);
+  const ContactSlide<> slide(gel.mask().rows, gel.mask().cols, 4, 5, test);
   auto state = slide.start();
-  Grid<std::uint8_t> mask(rows, cols), again(rows, cols);
   const auto home = fuzz::any_dots<Point2<float>>(in, 4, 5);
   for (int frame = 0; frame < 4; ++frame) {
-    Grid<Pixel> now = first;
+    cv::Mat_<Pixel> now = first.clone();
     // a square is pressed somewhere, with odd pixels beside it
-    const Index row = in.whole(0, rows - 1), col = in.whole(0, cols - 1), size = in.whole(0, 40);
-    const Pixel pressed = in.cell<Pixel>(0, 250), odd = in.cell<Pixel>(0, 260);
-    for (Index i = row; i < (std::min)(rows, row + size); ++i) {
-      for (Index j = col; j < (std::min)(cols, col + size); ++j) {
-        now.view()(i, j) = pressed;
-      }
-    }
-    now.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = odd;
-    const auto r = fuzz::frame([&] { return contact(now.view(), mask.view(), work); });
-    const auto same = contact(now.view(), again.view(), fresh);
-    require(r.accepted(), "a frame of the right size is accepted");
-    require(
-        mask == again && fuzz::same_bits(r.area_mm2, same.area_mm2) && r.regions == same.regions,
-        "the same frame gives the same bits, whatever came before");
-    require(is_finite(r.area_mm2) && r.area_mm2 >= 0, "an area is finite and not negative");
-    require(!r.in_contact() || (is_finite(r.center_mm.x) && is_finite(r.center_mm.y)),
-            "a contact has a finite center");
+    const cv::Rect square(static_cast<int>(in.whole(0, cols - 1)),
+                          static_cast<int>(in.whole(0, rows - 1)),
+                          static_cast<int>(in.whole(0, 40)), static_cast<int>(in.whole(0, 40)));
+    now(square & cv::Rect({0, 0}, now.size())) = in.cell<Pixel>(0, 250 * scale);
+    now(static_cast<int>(in.whole(0, rows - 1)), static_cast<int>(in.whole(0, cols - 1))) =
+        in.cell<Pixel>(0, 260 * scale);
+    const GelResult r = gel(now), same = fresh(now);
+    require(r.status != FrameStatus::refused, "a frame of the right size is accepted");
+    require(cv::norm(gel.mask(), fresh.mask(), cv::NORM_INF) == 0 &&
+                r.contact_px == same.contact_px && fuzz::same_bits(r.center_px.x, same.center_px.x),
+            "the same frame gives the same bits, whatever came before");
+    require(r.contact_px == cv::countNonZero(gel.mask()) * options.cell_px * options.cell_px,
+            "the area is that of the mask");
+    require(!r.in_contact() || is_finite(r.center_px), "a contact has a finite center");
     const auto dots = fuzz::moved_dots(in, home);
+    const cv::Mat_<float> imprint = gel.imprint();
     auto copy = state;
-    const auto slid =
-        fuzz::frame([&] { return slide(work.imprint(), work.contact(), dots.view(), state); });
-    const auto copied = slide(work.imprint(), work.contact(), dots.view(), copy);
+    const auto slid = fuzz::frame([&] { return slide(imprint, gel.mask(), dots.view(), state); });
+    const auto copied = slide(imprint, gel.mask(), dots.view(), copy);
     require(slid.accepted() && slid.status == copied.status &&
                 fuzz::same_bits(slid.evidence, copied.evidence),
             "a copied state gives the same bits");
@@ -118,9 +130,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return fuzz::run(data, size, [](Input& in) {
     switch (in.whole(0, 3)) {
       case 0:
-        return try_slide<std::uint8_t>(in);
+        return try_slide<std::uint8_t>(in, 1);
       case 1:
-        return try_slide<float>(in);
+        return try_slide<std::uint16_t>(in, 256);
       case 2:
         return try_intensity<std::uint8_t>(in);
       default:

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
@@ -434,7 +433,6 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
         refusal([&] { (void)fit_reference(Camera<>{}, Absorption<>{}, image, image, image); }),
         refusal([&] { const NeighbourLightCompensation<> r({5}, 0.1F, image); }),
         refusal([&] { const IntensityDepth<> r(image, {}); }),
-        refusal([&] { const ContactByDifference<> r(std::array{image}); }),
         refusal([&] { (void)fit_contact_threshold(Camera<>{}, std::array{image}); }),
     };
   };

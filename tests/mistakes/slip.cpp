@@ -419,7 +419,7 @@ namespace {
 template <class Ratio, class Convert>
 std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& convert) {
   const test::GelCamera camera{.pitch_mm = 1.2, .jitter_px = 0.06};
-  GelContact<> ball({.friction = 5});
+  test::BallOnGel<> ball({.friction = 5});
   test::Random random(3);
   auto state = ratio.start();
   DotStates states(camera.dot_rows(), camera.dot_cols());

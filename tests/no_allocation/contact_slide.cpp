@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/contact_slide.hpp"
 
+#include <array>
 #include <vector>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
@@ -13,28 +15,29 @@
 
 using namespace fingerpad;
 
-TEST_CASE("contact by difference, slide and recoil: a frame allocates nothing",
-          "[contact_by_difference][contact_slide][recoil]") {
+TEST_CASE("gel contact: its images stay; slide and recoil: a frame allocates nothing",
+          "[gel_contact][contact_slide][recoil]") {
   const test::GelCamera camera;
   test::Random random(5);
-  GelContact<> contact(GelPad{});
-  const std::vector free = {camera.frame(contact, random)};
-  const ContactByDifference<> region(free);
-  auto workspace = region.workspace();
-  const auto cells = workspace.difference();
+  test::BallOnGel<> contact(test::GelPad{});
+  GelContact gel(std::vector{test::mat_of(camera.frame(contact, random))});
+  const auto images = [&] {
+    return std::array<const void*, 3>{gel.mask().data, gel.difference().data, gel.imprint().data};
+  };
+  const auto first = images();
   const auto home = camera.dots(contact, random);
-  const ContactSlide<> slide(cells.rows(), cells.cols(), home.rows(), home.cols());
+  const ContactSlide<> slide(gel.mask().rows, gel.mask().cols, home.rows(), home.cols());
   auto state = slide.start();
   const Recoil<> recoil(home);
   auto recoil_state = recoil.start();
-  test::Image<std::uint8_t> mask(camera.rows, camera.cols);
   for (int frame = 0; frame < 5; ++frame) {
     contact.drag(0.5 + 0.1 * frame, {0.5 * frame, 0.1 * frame});
-    const auto image = camera.frame(contact, random);
+    const GelResult found = gel(test::mat_of(camera.frame(contact, random)));
+    const cv::Mat_<float>& imprint = gel.imprint();
+    CHECK(images() == first);
     const auto dots = camera.dots(contact, random);
     const long before = test::allocations();
-    const ContactResult found = region(image, mask, workspace);
-    const auto slid = slide(workspace.imprint(), workspace.contact(), dots, state);
+    const auto slid = slide(imprint, gel.mask(), dots, state);
     const auto sprung = recoil(dots, recoil_state);
     const long after = test::allocations();
     CHECK(before > 0);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
@@ -90,15 +89,6 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
     bool found = true;
     CHECK(taken([&] { found = slide(frame, touch, dots_px, copy).ok() && found; }) == 0);
     CHECK(found);
-  }
-  SECTION("contact by difference") {
-    const LazyView free(64, 64, [](Index, Index) { return 100.0; });
-    const ContactByDifference<> difference(std::array{free});
-    const auto work = difference.workspace();
-    auto copy = work;
-    std::array<std::uint8_t, 64 * 64> mask{};
-    const StridedView<std::uint8_t> contact(mask.data(), 64, 64, 64);
-    CHECK(taken([&] { (void)difference(frame, contact, copy); }) == 0);
   }
   SECTION("features of the taxels") {
     const TaxelFeatures<> features(side, side);

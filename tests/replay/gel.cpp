@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Recordings of a gel pad: a ball of sim/elastic_gel.hpp is pressed, dragged until it slides, and
-// lifted. The results of replay are compared with the true slide.
+// Recordings of a gel pad: a ball of support/elastic_gel.hpp is pressed, dragged until it slides,
+// and lifted. The results of replay are compared with the true slide.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -20,7 +20,6 @@
 #include "support/gel_frames.hpp"
 
 namespace fs = std::filesystem;
-using fingerpad::GelContact;
 using test::GelCamera;
 
 namespace {
@@ -96,7 +95,7 @@ class GelRecording {
   }
 
   GelCamera camera{.contrast = 0.8};
-  GelContact<> contact{fingerpad::GelPad{}};
+  test::BallOnGel<> contact{test::GelPad{}};
 
  private:
   test::ScratchFolder root_;
@@ -159,12 +158,12 @@ TEST_CASE("a gel that holds a ball, and one that nothing touches") {
   CHECK(fs::exists(untouched.out() / "pictures" / "slide.png"));
 }
 
-TEST_CASE("contact by difference for dots of any size") {
-  const fingerpad::DifferenceTest usual;
+TEST_CASE("gel contact for dots of any size") {
+  const fingerpad::GelOptions usual;
   for (const double larger : {0.1, 0.5, 1.0, 2.0, 10.0}) {
-    const auto test = replay::difference_test_for(larger * usual.dot_px);
-    CHECK_NOTHROW(expects_valid(test));
-    CHECK(test.smoothing_px == Approx(larger * usual.smoothing_px));
-    CHECK(std::abs(double(test.min_region_px) - larger * larger * 800) <= 1);
+    const auto options = replay::gel_options_for(larger * usual.dot_px);
+    CHECK(check(options) == "");
+    CHECK(options.smoothing_px == Approx(larger * usual.smoothing_px));
+    CHECK(std::abs(options.min_region_px - larger * larger * 800) <= 1);
   }
 }

@@ -1,23 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Frames of the gel of sim/elastic_gel.hpp. Colours show the slope of the surface, as under three
+// Frames of the gel of elastic_gel.hpp. Colours show the slope of the surface, as under three
 // lamps at the pad's sides, and dark dots move with the gel. Noise in grey levels, an exposure, and
 // jitter of the detected dots are included.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <vector>
 
+#include "elastic_gel.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/sim/elastic_gel.hpp"
 #include "pad.hpp"
 
 namespace test {
 
 using ColourFrame = Image<std::array<std::uint8_t, 3>>;
 using GelDots = Image<fingerpad::Point2<double>>;
+
+/// A copy of the frame.
+inline cv::Mat mat_of(const ColourFrame& frame) {
+  auto* const bytes = const_cast<std::array<std::uint8_t, 3>*>(frame.cells.data());
+  return cv::Mat(static_cast<int>(frame.rows()), static_cast<int>(frame.cols()), CV_8UC3, bytes)
+      .clone();
+}
 
 struct GelCamera {
   Index rows = 240;
@@ -45,7 +53,7 @@ struct GelCamera {
   }
 
   /// Positions of the dots without jitter.
-  GelDots true_dots(const fingerpad::GelContact<>& contact) const {
+  GelDots true_dots(const BallOnGel<>& contact) const {
     GelDots dots(dot_rows(), dot_cols());
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j) {
@@ -58,7 +66,7 @@ struct GelCamera {
     }
     return dots;
   }
-  GelDots dots(const fingerpad::GelContact<>& contact, Random& random) const {
+  GelDots dots(const BallOnGel<>& contact, Random& random) const {
     GelDots found = true_dots(contact);
     for (auto& dot : found.cells) {
       dot.x += jitter_px * random.normal();
@@ -67,7 +75,7 @@ struct GelCamera {
     return found;
   }
 
-  ColourFrame frame(const fingerpad::GelContact<>& contact, Random& random) const {
+  ColourFrame frame(const BallOnGel<>& contact, Random& random) const {
     ColourFrame frame(rows, cols);
     const auto slope = slopes(contact);
     const auto ball = px_of(contact.ball_mm());
@@ -87,7 +95,7 @@ struct GelCamera {
   }
 
   /// The pixels that the ball touches.
-  Image<std::uint8_t> touched(const fingerpad::GelContact<>& contact) const {
+  Image<std::uint8_t> touched(const BallOnGel<>& contact) const {
     Image<std::uint8_t> mask(rows, cols);
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
@@ -102,7 +110,7 @@ struct GelCamera {
   static constexpr double step_px = 0.5;
 
   /// dz / dr at multiples of step_px from the ball's axis.
-  std::vector<double> slopes(const fingerpad::GelContact<>& contact) const {
+  std::vector<double> slopes(const BallOnGel<>& contact) const {
     std::vector<double> slope;
     const double step_mm = step_px * mm_per_px;
     const auto far = static_cast<Index>(2 * static_cast<double>(rows + cols) / step_px);

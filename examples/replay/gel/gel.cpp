@@ -65,10 +65,8 @@ void GelReplay::operator()(int frame,
 void GelReplay::write_row(const GelRow& row) {
   const GelFrame& seen = row.seen;
   const auto number = [](float value) { return cell_of(static_cast<double>(value)); };
-  const cv::Size size = free_.frames.front().size();
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
-         << cell_of(seen.contact.center_mm.x + (size.width - 1) / 2.0) << ','
-         << cell_of(seen.contact.center_mm.y + (size.height - 1) / 2.0) << ','
+         << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
          << name_of(seen.slide.status) << ',' << seen.slide.dots << ','
          << number(seen.slide.slide_px.x) << ',' << number(seen.slide.slide_px.y) << ','
          << number(seen.slide.slide) << ',' << number(seen.slide.rotation_rad) << ','

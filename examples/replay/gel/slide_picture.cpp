@@ -70,8 +70,7 @@ void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& co
 }
 
 Spot middle_of(const GelScene& scene) {
-  const auto& center = scene.seen.contact.center_mm;  // relative to the image center, px
-  return {center.x + (scene.image.cols - 1) / 2.0, center.y + (scene.image.rows - 1) / 2.0};
+  return {scene.seen.contact.center_px.x, scene.seen.contact.center_px.y};
 }
 
 /// Paints the frame, the contact's outline, and its slide past the dots.

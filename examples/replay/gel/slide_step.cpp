@@ -13,42 +13,35 @@
 namespace replay {
 namespace {
 
-using Colours = cv::Mat_<cv::Vec3b>;
 constexpr int first_frames = 3;                 // at most this many may show the free pad
 constexpr double usual_dot_share = 14.0 / 640;  // of the frame's width
 
-/// Converts to 8-bit BGR.
-Colours colours_of(const cv::Mat& image) {
-  cv::Mat levels = image;
-  if (image.depth() == CV_16U) {
-    image.convertTo(levels, CV_8U, 1.0 / 256);
-  }
-  Colours colours;
-  if (levels.channels() == 4) {
-    cv::cvtColor(levels, colours, cv::COLOR_BGRA2BGR);
-  } else {
-    colours = levels;
+/// The image without a fourth channel.
+cv::Mat colours_of(const cv::Mat& image) {
+  cv::Mat colours = image;
+  if (image.channels() == 4) {
+    cv::cvtColor(image, colours, cv::COLOR_BGRA2BGR);
   }
   return colours;
 }
 
-std::vector<Colours> colours_of(const std::vector<cv::Mat>& images) {
-  std::vector<Colours> all;
+std::vector<cv::Mat> colours_of(const std::vector<cv::Mat>& images) {
+  std::vector<cv::Mat> all;
   for (const cv::Mat& image : images) {
     all.push_back(colours_of(image));
   }
   return all;
 }
 
-fingerpad::DifferenceTest test_of(const std::vector<cv::Mat>& free_frames, double dot_px) {
+fingerpad::GelOptions options_of(const std::vector<cv::Mat>& free_frames, double dot_px) {
   const double usual = free_frames.empty() ? 14.0 : usual_dot_share * free_frames.front().cols;
-  return difference_test_for(dot_px > 0 ? dot_px : usual);
+  return gel_options_for(dot_px > 0 ? dot_px : usual);
 }
 
-fingerpad::SlideTest slide_test_for(const DotGrid& dots, const fingerpad::DifferenceTest& test) {
+fingerpad::SlideTest slide_test_for(const DotGrid& dots, const fingerpad::GelOptions& options) {
   fingerpad::SlideTest slide;
   slide.pitch_px = pitch_px(dots);
-  slide.cell_px = static_cast<double>(test.cell_px);
+  slide.cell_px = options.cell_px;
   return slide;
 }
 
@@ -56,13 +49,11 @@ fingerpad::SlideTest slide_test_for(const DotGrid& dots, const fingerpad::Differ
 std::vector<cv::Mat> free_first_frames(Recording& recording) {
   recording.frames.seek(0);
   std::vector<cv::Mat> frames = {next_frame(recording.frames, recording.reference.size())};
-  const fingerpad::ContactByDifference<3> contact(colours_of(frames));
-  auto workspace = contact.workspace();
-  cv::Mat_<uchar> mask(recording.reference.size());
+  fingerpad::GelContact contact(colours_of(frames));
   const int last = (std::min)(first_frames, recording.frames.size());
   for (int k = 1; k < last; ++k) {
     const cv::Mat frame = next_frame(recording.frames, recording.reference.size());
-    if (contact(colours_of(frame), mask, workspace).in_contact()) {
+    if (contact(colours_of(frame)).in_contact()) {
       break;
     }
     frames.push_back(frame);
@@ -89,18 +80,15 @@ double pitch_px(const DotGrid& dots) {
   return median_of(distances);
 }
 
-fingerpad::DifferenceTest difference_test_for(double dot_px) {
-  fingerpad::DifferenceTest test;
-  const double larger = dot_px / test.dot_px;  // than the default dots
-  const auto cell = std::lround(larger * static_cast<double>(test.cell_px));
-  test.cell_px =
-      (std::clamp)(static_cast<fingerpad::Index>(cell), fingerpad::Index{1}, fingerpad::Index{16});
-  test.dot_px = dot_px;
-  test.smoothing_px *= larger;
-  test.max_gap_px *= larger;
-  test.min_region_px = std::lround(larger * larger * static_cast<double>(test.min_region_px));
-  test.mm_per_px = 1;
-  return test;
+fingerpad::GelOptions gel_options_for(double dot_px) {
+  fingerpad::GelOptions options;
+  const double larger = dot_px / options.dot_px;  // than the default dots
+  options.cell_px = (std::clamp)(cvRound(larger * options.cell_px), 1, 16);
+  options.dot_px = dot_px;
+  options.smoothing_px *= larger;
+  options.max_gap_px *= larger;
+  options.min_region_px = cvRound(larger * larger * options.min_region_px);
+  return options;
 }
 
 FreePad free_pad_of(Recording& recording) {
@@ -122,26 +110,30 @@ FreePad free_pad_of(Recording& recording) {
 SlideStep::SlideStep(const std::vector<cv::Mat>& free_frames,
                      const DotGrid& free_dots,
                      double dot_px)
-    : contact_(colours_of(free_frames), test_of(free_frames, dot_px)),
-      workspace_(contact_.workspace()),
-      slide_(workspace_.difference().rows(),
-             workspace_.difference().cols(),
+    : options_(options_of(free_frames, dot_px)),
+      contact_(colours_of(free_frames), options_),
+      slide_(contact_.mask().rows,
+             contact_.mask().cols,
              free_dots.rows,
              free_dots.cols,
-             slide_test_for(free_dots, test_of(free_frames, dot_px))),
+             slide_test_for(free_dots, options_)),
       slide_state_(slide_.start()),
       recoil_(free_dots, {.pitch_px = pitch_px(free_dots)}),
       recoil_state_(recoil_.start()),
       limit_state_(limit_.start()) {}
 
 GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask) {
-  const Colours frame = colours_of(image);
+  const cv::Mat frame = colours_of(image);
   GelFrame seen;
   const auto start = std::chrono::steady_clock::now();
-  seen.contact = contact_(frame, mask, workspace_);
-  seen.slide = slide_(workspace_.imprint(), workspace_.contact(), dots, slide_state_);
+  seen.contact = contact_(frame);
+  seen.slide = slide_(contact_.imprint(), contact_.mask(), dots, slide_state_);
   const auto end = std::chrono::steady_clock::now();
   ms_.push_back(std::chrono::duration<double, std::milli>(end - start).count());
+  mask.create(frame.size());
+  mask = 0;
+  const cv::Rect whole({0, 0}, contact_.mask().size() * options_.cell_px);
+  cv::resize(contact_.mask(), mask(whole), whole.size(), 0, 0, cv::INTER_NEAREST);
   seen.recoil = recoil_(dots, recoil_state_);
   seen.slip = limit_(fingerpad::ContactLoad<double>{}, seen.slide, limit_state_);
   return seen;

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/recoil.hpp"
@@ -18,8 +18,8 @@ namespace replay {
 /// Median distance of neighbouring dots; NaN if no two neighbours are present.
 double pitch_px(const DotGrid& dots);
 
-/// Thresholds of contact by difference for dots of this diameter.
-fingerpad::DifferenceTest difference_test_for(double dot_px);
+/// Options of the contact for dots of this diameter.
+fingerpad::GelOptions gel_options_for(double dot_px);
 
 /// The frames that are taken as the free pad.
 struct FreePad {
@@ -33,7 +33,7 @@ FreePad free_pad_of(Recording& recording);
 
 /// One frame of a gel.
 struct GelFrame {
-  fingerpad::ContactResult contact;  ///< in px: mm_per_px is 1
+  fingerpad::GelResult contact;
   fingerpad::SlideResult<float> slide;
   fingerpad::RecoilResult<float> recoil;
   fingerpad::SlipResult<double> slip;  ///< fused evidence, without a force
@@ -47,15 +47,12 @@ class SlideStep {
 
   /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere.
   GelFrame operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask);
-  /// The last frame's difference from the free pad, cell by cell.
-  fingerpad::StridedView<const float> difference() const { return workspace_.difference(); }
   /// Median time of contact and slide over the frames so far.
   double median_ms() const;
 
  private:
-  using Contact = fingerpad::ContactByDifference<3>;
-  Contact contact_;
-  Contact::Workspace workspace_;
+  fingerpad::GelOptions options_;
+  fingerpad::GelContact contact_;
   fingerpad::ContactSlide<> slide_;
   fingerpad::ContactSlide<>::State slide_state_;
   fingerpad::Recoil<> recoil_;

@@ -61,10 +61,8 @@ inline std::string check(const ContactTest& test) {
 
 /// The contact of a frame. Without contact, areas are 0 and all other values NaN.
 ///
-/// `not_of_this_pad` means one of these: no pixel of the frame is known; the mean height of the
-/// contact is a twentieth of the free apex or less, or twenty times it or more, as with depths in m
-/// (contact_region.hpp); at least half of the frame and half of its border are in contact
-/// (contact_by_difference.hpp).
+/// `not_of_this_pad`: no pixel of the frame is known, or the mean height of the contact is a
+/// twentieth of the free apex or less, or twenty times it or more, as with depths in m.
 struct [[nodiscard]] ContactResult {
   FrameStatus status = FrameStatus::refused;
   Index contact_px = 0;  ///< pixels in contact

@@ -10,7 +10,7 @@
 // leaves them where they are. Use the stick ratio on membranes and this method on gels.
 //
 // The imprint is any image in which the contact is visible: the difference image of
-// contact_by_difference, or a depth map.
+// GelContact, or a depth map.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

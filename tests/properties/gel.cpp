@@ -1,23 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Properties for every gel, every pitch and every noise: balls on the gel of sim/, seen by a
-// camera, detected by contact_by_difference, tracked by contact_slide.
-#include "fingerpad/slip/contact_slide.hpp"
-
+// Properties for every gel, every pitch and every noise: balls on a gel, seen by a camera, detected
+// by GelContact, tracked by ContactSlide.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "fingerpad/contact/contact_by_difference.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
+#include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "support/catch.hpp"
 #include "support/gel_frames.hpp"
 #include "support/generators.hpp"
 
 using namespace fingerpad;
+using test::BallOnGel;
 using test::GelCamera;
+using test::GelPad;
 using test::Image;
 using test::Random;
 
@@ -43,13 +45,13 @@ struct AnyGel {
     const double a = test::uniform(2.5, 4);
     force_n = a * a * a * 4 * pad.young_mpa / 0.75 / (3 * pad.ball_mm);
     pad.friction = 1;
-    GelContact<> contact(pad);
+    BallOnGel<> contact(pad);
     contact.drag(force_n, {0, 0});
     pad.friction = a * test::uniform(0.2, 0.4) / contact.max_pull_mm();
   }
 
   double pull_mm() const {
-    GelContact<> contact(pad);
+    BallOnGel<> contact(pad);
     contact.drag(force_n, {0, 0});
     return contact.max_pull_mm();
   }
@@ -80,20 +82,19 @@ struct Seen {
   }
 };
 
-DifferenceTest test_of(const GelCamera& camera) {
-  DifferenceTest test;
-  test.cell_px = 2;
-  test.dot_px = 1.2 * camera.dot_mm / camera.mm_per_px;
-  test.max_gap_px = 2 * test.dot_px;
-  test.smoothing_px = 3;
-  test.min_region_px = 100;
-  return test;
+GelOptions options_of(const GelCamera& camera) {
+  const double dot_px = 1.2 * camera.dot_mm / camera.mm_per_px;
+  return {.cell_px = 2,
+          .smoothing_px = 3,
+          .dot_px = dot_px,
+          .max_gap_px = 2 * dot_px,
+          .min_region_px = 100};
 }
 
 /// Radius in mm within which a ball's dent differs by more than `threshold`. The slope beyond the
 /// contact is that of eq. 3.42 of Johnson, and the lamps see its root mean square.
 double dent_mm(const AnyGel& gel, double threshold) {
-  GelContact<> contact(gel.pad);
+  BallOnGel<> contact(gel.pad);
   contact.drag(gel.force_n, {0, 0});
   const double a = contact.radius_mm();
   const double at_edge = gel.camera.contrast * a / gel.pad.ball_mm / std::sqrt(2.0);
@@ -112,7 +113,7 @@ class TrueSlide {
   TrueSlide(const GelCamera& camera, double dent_mm) : camera_(camera), dent_mm_(dent_mm) {}
 
   /// Adds another step of the ball.
-  void add(const GelContact<>& contact) {
+  void add(const BallOnGel<>& contact) {
     const auto dots = camera_.true_dots(contact);
     std::vector<bool> in;
     std::vector<double> x;
@@ -155,21 +156,20 @@ Seen watch(const AnyGel& gel,
            SlideTest test,
            bool all_touch = false) {
   Random random(static_cast<std::uint64_t>(test::whole(1, 1000)));
-  GelContact<> contact(gel.pad);
+  BallOnGel<> contact(gel.pad);
   const GelCamera& camera = gel.camera;
-  const std::vector free = {camera.frame(contact, random), camera.frame(contact, random)};
-  const ContactByDifference<> region(free, test_of(camera));
-  auto workspace = region.workspace();
-  const auto cells = workspace.difference();
+  const auto frame = [&] { return test::mat_of(camera.frame(contact, random)); };
+  const std::vector free = {frame(), frame()};
+  GelContact region(free, options_of(camera));
+  const Index rows = region.mask().rows, cols = region.mask().cols;
   const auto home = camera.true_dots(contact);
   test.pitch_px = camera.pitch_px();
   test.cell_px = 2;
-  const ContactSlide<> slide(cells.rows(), cells.cols(), home.rows(), home.cols(), test);
+  const ContactSlide<> slide(rows, cols, home.rows(), home.cols(), test);
   auto state = slide.start();
   const Recoil<> recoil(home, {.pitch_px = camera.pitch_px()});
   auto recoil_state = recoil.start();
-  Image<std::uint8_t> mask(camera.rows, camera.cols);
-  const Image<std::uint8_t> all(cells.rows(), cells.cols(), 1);
+  const Image<std::uint8_t> all(rows, cols, 1);
   Seen seen;
   TrueSlide true_slide(camera, dent_mm(gel, region.threshold()));
   for (const Step& step : steps) {
@@ -177,10 +177,9 @@ Seen watch(const AnyGel& gel,
     true_slide.add(contact);
     const auto dots = camera.dots(contact, random);
     // ok or, in these small frames, more than half in contact
-    RC_ASSERT(region(camera.frame(contact, random), mask, workspace).status !=
-              FrameStatus::refused);
-    seen.slide.push_back(all_touch ? slide(workspace.imprint(), all, dots, state)
-                                   : slide(workspace.imprint(), workspace.contact(), dots, state));
+    RC_ASSERT(region(frame()).status != FrameStatus::refused);
+    seen.slide.push_back(all_touch ? slide(region.imprint(), all, dots, state)
+                                   : slide(region.imprint(), region.mask(), dots, state));
     seen.recoil.push_back(recoil(dots, recoil_state));
     seen.sticks.push_back(contact.stick_share());
     seen.slides.push_back(contact.slides());
@@ -218,36 +217,27 @@ struct LargeContact {
 
   LargeContact() {
     gel.camera.noise = test::uniform(0, 1);
-    gel.camera.mm_per_px = dent_mm(gel, DifferenceTest().min_difference) / dent_px;
+    gel.camera.mm_per_px = dent_mm(gel, GelOptions().min_difference) / dent_px;
   }
-  ContactByDifference<> region() {
-    const GelContact<> none(gel.pad);
-    return ContactByDifference<>(
-        std::vector{gel.camera.frame(none, random), gel.camera.frame(none, random)},
-        test_of(gel.camera));
-  }
-  ContactResult seen(const ContactByDifference<>& region,
-                     const test::ColourFrame& frame,
-                     Image<std::uint8_t>& mask) const {
-    auto workspace = region.workspace();
-    return region(frame, mask, workspace);
+  GelContact region() {
+    const BallOnGel<> none(gel.pad);
+    const auto frame = [&] { return test::mat_of(gel.camera.frame(none, random)); };
+    return GelContact(std::vector{frame(), frame()}, options_of(gel.camera));
   }
 };
 
 }  // namespace
 
-TEST_CASE("contact by difference: a contact of half the frame is found in any exposure",
-          "[contact_by_difference]") {
+TEST_CASE("gel contact: a contact of half the frame is found in any exposure", "[gel_contact]") {
   rc::prop("for every gel", [] {
     LargeContact large;
     GelCamera& camera = large.gel.camera;
-    const auto region = large.region();
+    GelContact region = large.region();
     camera.exposure = test::uniform(0.8, 1.1);
-    GelContact<> ball(large.gel.pad);
+    BallOnGel<> ball(large.gel.pad);
     const auto off = 0.05 * static_cast<double>(camera.rows) * camera.mm_per_px * any_direction();
     ball.drag(large.gel.force_n, off);
-    Image<std::uint8_t> mask(camera.rows, camera.cols);
-    const ContactResult seen = large.seen(region, camera.frame(ball, large.random), mask);
+    const GelResult seen = region(test::mat_of(camera.frame(ball, large.random)));
     RC_ASSERT(seen.ok());
     Index expected = 0;
     for (Index i = 0; i < camera.rows; ++i) {
@@ -262,13 +252,12 @@ TEST_CASE("contact by difference: a contact of half the frame is found in any ex
   });
 }
 
-TEST_CASE("contact by difference: other lamps are told from a large contact",
-          "[contact_by_difference]") {
+TEST_CASE("gel contact: other lamps are told from a large contact", "[gel_contact]") {
   rc::prop("for every gel", [] {
     LargeContact large;
     const GelCamera& camera = large.gel.camera;
-    const auto region = large.region();
-    GelContact<> ball(large.gel.pad);
+    GelContact region = large.region();
+    BallOnGel<> ball(large.gel.pad);
     if (test::whole(0, 1) == 1) {
       ball.drag(large.gel.force_n, {0, 0});
     }
@@ -287,8 +276,7 @@ TEST_CASE("contact by difference: other lamps are told from a large contact",
         }
       }
     }
-    Image<std::uint8_t> mask(camera.rows, camera.cols);
-    RC_ASSERT(large.seen(region, frame, mask).status == FrameStatus::not_of_this_pad);
+    RC_ASSERT(region(test::mat_of(frame)).status == FrameStatus::not_of_this_pad);
   });
 }
 

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Contact of a gel pad without depth, from the difference between a frame and the free pad. It
+// suits gel pads lit from the side (GelSight, DIGIT and similar), with or without printed dots, and
+// gels that darken where they are pressed. Needs OpenCV (core, imgproc): target fingerpad::gel.
+//
+// The difference is relative, (now / gain) / free - 1, so that lamps may be uneven. The gain of
+// each channel is the median of now / free, so that exposure and white balance may change. The
+// median is taken over the frame or, if more than half of the frame differs, over its border. Dots
+// are left out: they move with the gel beside a contact as well as under it, and would be taken for
+// contact.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/core/status.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Lengths are in px of the frame.
+struct GelOptions {
+  int cell_px = 4;          ///< side of a cell, in which contact is decided; in [1, 16]
+  double smoothing_px = 7;  ///< sd of the Gaussian that averages the difference, about half a dot;
+                            ///< in [cell_px / 2, 16 cell_px]
+  double dot_px = 14;       ///< diameter of the printed dots, in [0, 16 cell_px]; 0: no dots
+  double dot_contrast = 0.1;  ///< a cell darker than its surroundings by this fraction belongs to a
+                              ///< dot; in (0, 1)
+  double min_difference = 0.02;  ///< smallest threshold, as a fraction of the free brightness,
+                                 ///< however low the noise of the free frames; in (0, 1)
+  double max_gap_px = 28;   ///< gaps in a contact up to this width are closed, by default two dots;
+                            ///< in [0, 32 cell_px]
+  int min_region_px = 800;  ///< smaller regions are dropped; >= 0
+};
+
+/// Says which value is out of range; "" if none is.
+inline std::string check(const GelOptions& options) {
+  const double cell = options.cell_px;
+  constexpr Range share = {.min = 0, .max = 1, .above_min = true, .below_max = true};
+  return check("GelOptions", {{"cell_px", options.cell_px, within(1, 16)},
+                              {"smoothing_px", options.smoothing_px, within(cell / 2, 16 * cell)},
+                              {"dot_px", options.dot_px, within(0, 16 * cell)},
+                              {"dot_contrast", options.dot_contrast, share},
+                              {"min_difference", options.min_difference, share},
+                              {"max_gap_px", options.max_gap_px, within(0, 32 * cell)},
+                              {"min_region_px", options.min_region_px, not_negative}});
+}
+
+struct [[nodiscard]] GelResult {
+  /// not_of_this_pad: no cell is known, or at least half of the frame and of its border differ from
+  /// the free pad.
+  FrameStatus status = FrameStatus::refused;
+  int contact_px = 0;  ///< area of the contact
+  Point2<double> center_px = {not_a_number<double>(), not_a_number<double>()};  ///< its centroid
+
+  bool ok() const { return status == FrameStatus::ok; }
+  bool in_contact() const { return contact_px > 0; }
+};
+
+/// Finds the contact in frames of 8 or 16 bit (grey levels times 256) with one or three channels.
+/// Cells that are black or saturated say nothing. Valid while the object touches less than half of
+/// the frame or less than half of its border, because the majority is taken to be free.
+///
+/// One object a thread. Bounded time, O(rows cols). The constructor allocates all images; on each
+/// call OpenCV takes buffers for some rows of cells, and for outlines.
+class GelContact {
+ public:
+  /// Learns the free pad from frames of it. With two or more their noise is measured and may raise
+  /// the threshold. Refuses no frame, frames of several sizes or types, and bad parameters
+  /// (parameter_error).
+  explicit GelContact(std::span<const cv::Mat> free_frames, const GelOptions& options = {})
+      : options_(options) {
+    require(options);
+    constexpr const char* owner = "GelContact";
+    expects(!free_frames.empty(), owner, "free_frames", free_frames.size(), "one or more");
+    size_ = free_frames.front().size();
+    type_ = free_frames.front().type();
+    for (const cv::Mat& frame : free_frames) {
+      const auto number = &frame - free_frames.data();
+      expects(frame.size() == size_ && frame.type() == type_, owner, "free_frames: number", number,
+              "of the size and type of the first");
+    }
+    const int side = (std::min)(size_.height, size_.width);
+    expects(side >= options.cell_px, owner, "free_frames: side", side, ">= cell_px");
+    expects(type_ == CV_8UC1 || type_ == CV_8UC3 || type_ == CV_16UC1 || type_ == CV_16UC3, owner,
+            "free_frames: type", type_, "of 8 or 16 bit, with 1 or 3 channels");
+    const int gap = cvRound(in_cells(options.max_gap_px / 2));
+    closing_ = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * gap + 1, 2 * gap + 1});
+    inner_ = {{gap, gap}, size_ / options.cell_px};
+    wide_.create(inner_.height + 2 * gap, inner_.width + 2 * gap);
+    for (cv::Mat_<float>* image : {&weight_, &both_, &grey_, &share_, &difference_, &imprint_}) {
+      image->create(inner_.size());
+    }
+    relative_.create(inner_.size());
+    values_.reserve(static_cast<std::size_t>(inner_.area()));
+    learn(free_frames);
+    (void)(*this)(free_frames.front());  // OpenCV allocates the other images
+  }
+  GelContact(GelContact&&) = default;
+
+  /// The contact, cell by cell: 255, else 0. Cell (i, j) begins at the pixel (i, j) cell_px; pixels
+  /// beyond the last whole cell are left out.
+  const cv::Mat_<unsigned char>& mask() const { return mask_; }
+  /// The difference from the free pad, cell by cell, to which the threshold applies: the root mean
+  /// square over the channels, as a fraction of the free brightness; NaN where it is unknown.
+  const cv::Mat_<float>& difference() const { return difference_; }
+  /// The same with the dots filled in from the gel around them. GelSlide follows it: an imprint
+  /// with holes at the dots would seem to move with the dots. Computed on each call, O(rows cols).
+  const cv::Mat_<float>& imprint() {
+    for (int k = 0; k < inner_.area(); ++k) {
+      if (both_(k) == 0 && share_(k) > min_share) {
+        both_(k) = 1;
+        relative_(k) = smooth_(k) / share_(k);
+      }
+    }
+    average(imprint_);
+    return imprint_;
+  }
+  /// Cells whose difference exceeds it are contact.
+  double threshold() const { return threshold_; }
+
+  /// Finds the contact in a frame. A frame of another size or type than the free ones is refused.
+  GelResult operator()(const cv::Mat& frame) {
+    if (frame.size() != size_ || frame.type() != type_) {
+      return {};
+    }
+    read(frame);
+    GelResult result = found(false);
+    if (result.in_contact() && !is_mostly_free(false)) {
+      // a contact leaves most of the border free; another lamp changes the border most
+      result = found(true);
+      result.status = is_mostly_free(true) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    }
+    return result;
+  }
+
+ private:
+  static constexpr float min_share = 0.05F;  // of the Gaussian's weight that is on gel
+  static constexpr float saturated = 254;
+
+  double in_cells(double px) const { return px / options_.cell_px; }
+  bool is_border(int k) const {
+    const int i = k / inner_.width, j = k % inner_.width;
+    return i == 0 || j == 0 || i + 1 == inner_.height || j + 1 == inner_.width;
+  }
+  /// The value that the share `at` of values_ is below; `none` without values.
+  float quantile(double at, float none) {
+    const auto nth = values_.begin() + static_cast<std::ptrdiff_t>(at * double(values_.size()));
+    std::nth_element(values_.begin(), nth, values_.end());
+    return values_.empty() ? none : *nth;
+  }
+
+  /// Reduces a frame to means of cells, with weight 1 where they show gel, 0 where dots or nothing.
+  void read(const cv::Mat& frame) {
+    // OpenCV halves an image much faster than it shrinks it by another factor
+    const cv::Rect whole({0, 0}, inner_.size() * options_.cell_px);
+    cv::resize(frame(whole), half_, whole.size() / (options_.cell_px % 2 == 0 ? 2 : 1), 0, 0,
+               cv::INTER_AREA);
+    cv::resize(half_, small_, inner_.size(), 0, 0, cv::INTER_AREA);
+    if (frame.channels() == 1) {
+      cv::cvtColor(small_, colours_, cv::COLOR_GRAY2BGR);
+    }
+    const double levels = frame.depth() == CV_16U ? 1.0 / 256 : 1.0;
+    (frame.channels() == 1 ? colours_ : small_).convertTo(now_, CV_32F, levels);
+    for (int k = 0; k < inner_.area(); ++k) {
+      const auto [least, most] = std::minmax({now_(k)[0], now_(k)[1], now_(k)[2]});
+      weight_(k) = least > 0 && most < saturated ? 1 : 0;
+      grey_(k) = weight_(k) * (now_(k)[0] + now_(k)[1] + now_(k)[2]);
+    }
+    if (options_.dot_px > 0) {
+      const int width = 2 * cvCeil(2 * in_cells(options_.dot_px)) + 1;
+      cv::blur(grey_, around_, {width, width}, {-1, -1}, cv::BORDER_CONSTANT);
+      cv::blur(weight_, share_, {width, width}, {-1, -1}, cv::BORDER_CONSTANT);
+      const float gel = static_cast<float>(1 - options_.dot_contrast);
+      for (int k = 0; k < inner_.area(); ++k) {
+        weight_(k) = grey_(k) * share_(k) < gel * around_(k) ? 0 : weight_(k);
+      }
+      cv::erode(weight_, weight_, cv::Mat());  // dots may reach into the cells beside
+    }
+  }
+
+  /// Sets the free pad to the mean of the frames, and the threshold from their noise: the value
+  /// that a hundredth of a frame's difference from the mean of the others exceeds.
+  void learn(std::span<const cv::Mat> frames) {
+    const auto count = static_cast<float>(frames.size());
+    free_ = cv::Mat_<cv::Vec3f>(inner_.size(), cv::Vec3f());
+    free_weight_ = cv::Mat_<float>(inner_.size(), 1.0F);
+    for (const cv::Mat& frame : frames) {
+      read(frame);
+      free_ += now_ / count;
+      cv::multiply(free_weight_, weight_, free_weight_);
+    }
+    std::vector<float> noise;
+    for (const cv::Mat& frame : frames) {
+      read(frame);
+      compare(false);
+      values_.clear();
+      std::copy_if(difference_.begin(), difference_.end(), std::back_inserter(values_),
+                   [](float difference) { return is_finite(difference); });
+      // the mean of all contains the frame: the mean of the others differs more
+      noise.push_back(count / (std::max)(count - 1, 1.0F) * quantile(0.99, 0));
+    }
+    values_ = noise;  // the median, since one frame may not be free after all
+    threshold_ = (std::max)(options_.min_difference, static_cast<double>(quantile(0.5, 0)));
+  }
+
+  /// Sets difference_ to the root mean square over the channels of now / gain / free - 1, smoothed
+  /// over the gel that both frames show. The gain is that of a lattice over the frame, or of the
+  /// border.
+  void compare(bool by_border) {
+    cv::multiply(weight_, free_weight_, both_);
+    cv::Vec3f gain;
+    for (int c = 0; c < 3; ++c) {
+      values_.clear();
+      for (int k = 0; k < inner_.area(); k += by_border ? 1 : 1 + inner_.area() / 2048) {
+        if (both_(k) > 0 && (!by_border || is_border(k))) {
+          values_.push_back(now_(k)[c] / free_(k)[c]);
+        }
+      }
+      gain[c] = quantile(0.5, 1);
+    }
+    for (int k = 0; k < inner_.area(); ++k) {
+      for (int c = 0; c < 3; ++c) {
+        relative_(k)[c] = both_(k) > 0 ? now_(k)[c] / (gain[c] * free_(k)[c]) - 1 : 0;
+      }
+    }
+    average(difference_);
+  }
+  /// Root mean square over the channels of the mean of relative_ around each cell.
+  void average(cv::Mat_<float>& length) {
+    const double sd = in_cells(options_.smoothing_px);
+    const int width = 2 * cvCeil(3 * sd) + 1;
+    cv::GaussianBlur(relative_, smooth_, {width, width}, sd, sd, cv::BORDER_CONSTANT);
+    cv::GaussianBlur(both_, share_, {width, width}, sd, sd, cv::BORDER_CONSTANT);
+    for (int k = 0; k < inner_.area(); ++k) {
+      length(k) = share_(k) > min_share ? std::sqrt(smooth_(k).dot(smooth_(k)) / 3) / share_(k)
+                                        : not_a_number<float>();
+    }
+  }
+
+  /// Finds the contact in the frame that was read last: cells above the threshold, opened by a
+  /// cell, closed over gaps, without holes and small regions.
+  GelResult found(bool by_border) {
+    compare(by_border);
+    cv::compare(difference_, threshold_, mask_, cv::CMP_GT);
+    cv::morphologyEx(mask_, mask_, cv::MORPH_OPEN, cv::Mat());
+    wide_.setTo(0);  // wider than the frame, or closing would draw a contact to the frame's edge
+    mask_.copyTo(wide_(inner_));
+    cv::morphologyEx(wide_, wide_, cv::MORPH_CLOSE, closing_);
+    cv::findContours(wide_(inner_), outlines_, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    mask_.setTo(0);
+    const int cell_px2 = options_.cell_px * options_.cell_px;
+    for (const auto& outline : outlines_) {
+      // Pick's theorem: the outline joins the middles of cells
+      const double cells = cv::contourArea(outline) + static_cast<double>(outline.size()) / 2 + 1;
+      if (cells * cell_px2 >= options_.min_region_px) {
+        cv::fillPoly(mask_, outline, 255);
+      }
+    }
+    GelResult result;
+    const bool is_known = std::any_of(difference_.begin(), difference_.end(), is_finite<float>);
+    result.status = is_known ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    const cv::Moments sums = cv::moments(mask_, true);
+    result.contact_px = static_cast<int>(sums.m00) * cell_px2;
+    if (result.in_contact()) {
+      const auto middle_px = [&](double sum) {
+        return (sum / sums.m00 + 0.5) * options_.cell_px - 0.5;
+      };
+      result.center_px = {middle_px(sums.m10), middle_px(sums.m01)};
+    }
+    return result;
+  }
+
+  /// Whether less than half of the known cells, of the frame or of its border, differ.
+  bool is_mostly_free(bool of_border) const {
+    int balance = 0;
+    for (int k = 0; k < inner_.area(); ++k) {
+      const bool differs =
+          of_border ? difference_(k) > static_cast<float>(threshold_) : mask_(k) > 0;
+      if (!of_border || is_border(k)) {
+        balance += differs ? 1 : is_finite(difference_(k)) ? -1 : 0;
+      }
+    }
+    return balance < 0;
+  }
+
+  GelOptions options_;
+  cv::Size size_;   // of a frame, px
+  int type_ = 0;    // of a frame
+  cv::Rect inner_;  // the frame in wide_, in cells
+  double threshold_ = 0;
+  cv::Mat closing_, half_, small_, colours_;
+  cv::Mat_<cv::Vec3f> now_, free_, relative_, smooth_;
+  cv::Mat_<float> weight_, free_weight_, both_, share_, grey_, around_, difference_, imprint_;
+  cv::Mat_<unsigned char> mask_, wide_;
+  std::vector<std::vector<cv::Point>> outlines_;
+  std::vector<float> values_;
+};
+
+}  // namespace v0
+}  // namespace fingerpad
