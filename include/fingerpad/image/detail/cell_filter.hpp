@@ -143,38 +143,6 @@ class CellMorphology {
   S half_;
 };
 
-/// Morphological closing: closes gaps of masks (0 and 1) that are no wider than 2 reach cells. A
-/// mask is dilated beyond the image's edge and eroded from there, so that a region near the edge is
-/// not extended to it.
-template <scalar S>
-class CellClosing {
- public:
-  CellClosing(Index rows, Index cols, Index reach)
-      : reach_(reach),
-        wide_(rows + 2 * reach, cols + 2 * reach, reach),
-        size_(wide_.rows(), wide_.cols(), reach) {}
-
-  void operator()(PaddedCells<S>& mask) {
-    for (Index i = 0; i < wide_.rows(); ++i) {
-      std::fill(wide_.row(i), wide_.row(i) + wide_.cols(), S(0));
-    }
-    for (Index i = 0; i < mask.rows(); ++i) {
-      std::copy(mask.row(i), mask.row(i) + mask.cols(), wide_.row(i + reach_) + reach_);
-    }
-    size_.grow(wide_);
-    size_.shrink(wide_);
-    for (Index i = 0; i < mask.rows(); ++i) {
-      const S* closed = wide_.row(i + reach_) + reach_;
-      std::copy(closed, closed + mask.cols(), mask.row(i));
-    }
-  }
-
- private:
-  Index reach_;
-  PaddedCells<S> wide_;
-  CellMorphology<S> size_;
-};
-
 }  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad
