@@ -169,11 +169,7 @@ Trial intensity() {
     return presses;
   };
   const auto fit = [=](const std::vector<Picture>& presses) {
-    fingerpad::IntensityCalibration calibration;
-    for (const Picture& pressed : presses) {
-      (void)calibration.add(free, pressed, ball);
-    }
-    const auto found = calibration.fit();
+    const auto found = fit_intensity(free, presses, ball);
     return Estimate{{found.law.linear_mm}, {{found.covariance[0][0]}}};
   };
   return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);

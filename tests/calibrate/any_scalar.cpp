@@ -83,9 +83,8 @@ struct IntensityByBall {
       const double depth = root_sq > 0 ? std::fmax(0.0, 1.2 - 4 + std::sqrt(root_sq)) : 0.0;
       return 150 * std::exp(-depth / 3);
     });
-    IntensityCalibration<S> calibration({.smoothing_px = 0});
-    REQUIRE(calibration.add(free, pressed, {S(4) * p, S(0.1)}));
-    const IntensityFit<S> fit = calibration.fit();
+    const IntensityFit<S> fit =
+        fit_intensity<S>(free, std::array{pressed}, {S(4) * p, S(0.1)}, 1, {.smoothing_px = 0});
     REQUIRE(fit.ok());
     return {fit.law.linear_mm, fit.max_depth_mm};
   }

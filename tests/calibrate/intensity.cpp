@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/calibrate/intensity.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -62,6 +64,14 @@ struct Gel {
 
 const IntensityOptions as_it_is{.smoothing_px = 0};
 
+template <class Frames>
+IntensityFit<> fit(const Gel& gel,
+                   const Frames& pressed,
+                   int terms = 1,
+                   const IntensityOptions& options = {}) {
+  return fit_intensity(gel.free(), pressed, gel.press(), terms, options);
+}
+
 }  // namespace
 
 TEST_CASE("intensity calibration: the law comes back from presses without noise",
@@ -73,9 +83,7 @@ TEST_CASE("intensity calibration: the law comes back from presses without noise"
     gel.depth_mm = test::uniform(0.6, 1.6);
     gel.axis_mm = {test::uniform(5.5, 7.5), test::uniform(4.5, 6.5)};
     Random random(1);
-    IntensityCalibration calibration(as_it_is);
-    RC_ASSERT(calibration.add(gel.free(), gel.pressed(random), gel.press()));
-    const IntensityFit one = calibration.fit();
+    const IntensityFit<> one = fit(gel, std::array{gel.pressed(random)}, 1, as_it_is);
     RC_ASSERT(one.ok());
     RC_ASSERT(std::abs(one.law.linear_mm - gel.law.linear_mm) < 1e-10);
     RC_ASSERT(std::abs(one.max_depth_mm - gel.depth_mm) < 1e-10);
@@ -88,19 +96,19 @@ TEST_CASE("intensity calibration: three constants from two presses", "[intensity
   Gel gel;
   gel.law = {3, 2, -1.5};
   Random random(1);
-  IntensityCalibration calibration(as_it_is);
+  std::vector<Image<double>> pressed;
   for (const double depth : {0.7, 1.7}) {
     gel.depth_mm = depth;
     gel.axis_mm.x += 0.7;
-    REQUIRE(calibration.add(gel.free(), gel.pressed(random), gel.press()));
+    pressed.push_back(gel.pressed(random));
   }
-  const IntensityFit three = calibration.fit(3);
+  const IntensityFit<> three = fit(gel, pressed, 3, as_it_is);
   REQUIRE(three.ok());
   CHECK(three.law.linear_mm == Approx(3).epsilon(1e-4));
   CHECK(three.law.square_mm == Approx(2).epsilon(1e-3));
   CHECK(three.law.cube_mm == Approx(-1.5).epsilon(1e-3));
   CHECK(three.mean_error_mm < 1e-5);
-  const IntensityFit one = calibration.fit(1);
+  const IntensityFit<> one = fit(gel, pressed, 1, as_it_is);
   CHECK(one.ok());
   CHECK(one.mean_error_mm > 10 * three.mean_error_mm);
 }
@@ -113,13 +121,12 @@ TEST_CASE("intensity calibration: the covariance is that of the constants", "[in
   double variance = 0;
   constexpr int trials = 60;
   for (int k = 0; k < trials; ++k) {
-    IntensityCalibration calibration;  // noise that is not averaged flattens the law
-    REQUIRE(calibration.add(gel.free(), gel.pressed(random), gel.press()));
-    const IntensityFit fit = calibration.fit();
-    REQUIRE(fit.ok());
-    square_sum += square(fit.law.linear_mm - 4);
-    variance += fit.covariance[0][0] / trials;
-    CHECK(fit.covariance[1][1] == 0);
+    // noise that is not averaged flattens the law
+    const IntensityFit<> one = fit(gel, std::array{gel.pressed(random)});
+    REQUIRE(one.ok());
+    square_sum += square(one.law.linear_mm - 4);
+    variance += one.covariance[0][0] / trials;
+    CHECK(one.covariance[1][1] == 0);
   }
   const double ratio = std::sqrt(square_sum / trials / variance);
   CHECK(ratio > 0.6);
@@ -140,13 +147,12 @@ TEST_CASE("intensity calibration: rows and columns may be exchanged", "[intensit
     return other;
   };
   const Image<double> pressed = gel.pressed(random);
-  IntensityCalibration calibration, other;
-  REQUIRE(calibration.add(gel.free(), pressed, gel.press()));
-  REQUIRE(other.add(exchanged(gel.free()), exchanged(pressed), gel.press()));
-  const IntensityFit fit = calibration.fit(), same = other.fit();
-  REQUIRE(fit.ok());
-  CHECK(same.law.linear_mm == Approx(fit.law.linear_mm).epsilon(1e-6));
-  CHECK(same.covariance[0][0] == Approx(fit.covariance[0][0]).epsilon(1e-4));
+  const IntensityFit<> one = fit(gel, std::array{pressed});
+  const IntensityFit<> same =
+      fit_intensity(exchanged(gel.free()), std::array{exchanged(pressed)}, gel.press());
+  REQUIRE(one.ok());
+  CHECK(same.law.linear_mm == Approx(one.law.linear_mm).epsilon(1e-6));
+  CHECK(same.covariance[0][0] == Approx(one.covariance[0][0]).epsilon(1e-4));
 }
 
 TEST_CASE("intensity calibration: bytes and grain, as a camera has them", "[intensity_depth]") {
@@ -159,39 +165,35 @@ TEST_CASE("intensity calibration: bytes and grain, as a camera has them", "[inte
     frame.cells[k] = test::stored<std::uint8_t>(pressed.cells[k]);
   }
   frame(50, 60) = 255;
-  IntensityCalibration calibration;
-  REQUIRE(calibration.add(gel.free(), frame, gel.press()));
-  const IntensityFit fit = calibration.fit();
-  REQUIRE(fit.ok());
-  CHECK(fit.law.linear_mm == Approx(4).epsilon(0.02));
-  CHECK(fit.mean_error_mm < 0.01);
+  const IntensityFit<> one = fit(gel, std::array{frame});
+  REQUIRE(one.ok());
+  CHECK(one.law.linear_mm == Approx(4).epsilon(0.02));
+  CHECK(one.mean_error_mm < 0.01);
 }
 
 TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_depth]") {
   const Gel gel;
   Random random(1);
-  IntensityCalibration calibration(as_it_is);
-  CHECK(calibration.fit().cause == std::string(cause::nothing_to_check));
-  CHECK(!calibration.add(gel.free(), gel.free(), gel.press()));
-  CHECK(!calibration.add(gel.free(), Image<double>(height, width + 1, 100.0), gel.press()));
-  const Image<double> nothing(height, width, std::numeric_limits<double>::quiet_NaN());
-  CHECK(!calibration.add(gel.free(), nothing, gel.press()));
+  const Image<double> good = gel.pressed(random);
+  const auto refused = [&](const std::vector<Image<double>>& pressed, int terms = 1) {
+    return refusal([&] { (void)fit(gel, pressed, terms, as_it_is); });
+  };
+  CHECK(refused({good}) == "accepted");
+  CHECK(begins_with(refused({}), "fit_intensity: number of presses = 0"));
+  CHECK(begins_with(refused({good}, 2), "fit_intensity: terms = 2"));
   // brighter in the middle: not a ball in a darkening gel
-  auto bright = gel.pressed(random);
+  auto bright = good;
   for (double& level : bright.cells) {
     level = 150 * 60 / level;
   }
-  CHECK(!calibration.add(gel.free(), bright, gel.press()));
-  CHECK(calibration.fit().cause == std::string(cause::nothing_to_check));
-
-  CHECK(begins_with(refusal([&] { (void)calibration.fit(2); }), "IntensityCalibration: terms = 2"));
-  const auto refused = [&](const BallPress<>& press) {
-    return refusal([&] { (void)calibration.add(gel.free(), gel.free(), press); });
+  const Image<double> nothing(height, width, std::numeric_limits<double>::quiet_NaN());
+  for (const Image<double>& bad :
+       {gel.free(), Image<double>(height, width + 1, 100.0), nothing, bright}) {
+    CHECK(begins_with(refused({good, bad}), "fit_intensity: press = 1"));
+  }
+  const auto refused_ball = [&](const BallPress<>& ball) {
+    return refusal([&] { (void)fit_intensity(gel.free(), std::array{good}, ball); });
   };
-  CHECK(begins_with(refused({.ball_mm = 0}), "BallPress: ball_mm = 0"));
-  CHECK(begins_with(refused({.mm_per_px = -1}), "BallPress: mm_per_px = -1"));
-  CHECK(begins_with(refused({.contact_share = 1}), "BallPress: contact_share = 1"));
-  CHECK(begins_with(refused({.contact_share = -0.01}), "BallPress: contact_share = -0.01"));
-  CHECK(refused({.contact_share = 0}) == "accepted");  // uses the whole contact
-  CHECK(refused({.contact_share = 0.999}) == "accepted");
+  CHECK(begins_with(refused_ball({.ball_mm = 0}), "BallPress: ball_mm = 0"));
+  CHECK(begins_with(refused_ball({.mm_per_px = -1}), "BallPress: mm_per_px = -1"));
 }

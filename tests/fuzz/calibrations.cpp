@@ -115,7 +115,7 @@ void try_intensity(Input& in) {
   const double x = in.number(0, 40), y = in.number(0, 40), r = in.number(2, 20);
   expects(std::abs(x) < 100 && std::abs(y) < 100 && r > 1 && r < 100, "fuzz", "r", r,
           "in (1, 100)");
-  IntensityCalibration calibration;
+  std::vector<Grid<std::uint8_t>> presses;
   for (int press = 0; press < 2; ++press) {
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
@@ -128,9 +128,11 @@ void try_intensity(Input& in) {
     for (Index k = in.whole(0, 10); k > 0; --k) {
       pressed.view()(in.whole(0, rows - 1), in.whole(0, cols - 1)) = in.byte();
     }
-    (void)calibration.add(free.view(), pressed.view(), {in.number(1, 8), in.number(0.02, 0.2)});
+    presses.push_back(pressed);
   }
-  const IntensityFit fit = calibration.fit(in.flag() ? 3 : 1);
+  const BallPress<> ball = {in.number(1, 8), in.number(0.02, 0.2)};
+  const std::array pressed_views = {presses[0].view(), presses[1].view()};
+  const IntensityFit<> fit = fit_intensity(free.view(), pressed_views, ball, in.flag() ? 3 : 1);
   if (fit.ok()) {
     fingerpad::require(fit.law);
     require(is_finite(fit.mean_error_mm) && fit.max_error_mm >= fit.mean_error_mm,
