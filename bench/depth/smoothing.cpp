@@ -78,7 +78,7 @@ struct Bench {
     const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
       const GreyScale scale = grey_scale_of<cell_t<Red>>();
       rows->start(r, g, scale, 0);
-      for (Index i = 0; i < r.rows(); ++i) {
+      for (Index i = 0; i < r.rows(); ++i) {  // 640 columns are whole blocks of 64
         rows->next(r, g, scale, &smooth.red(i, 0), &smooth.green(i, 0));
       }
     };

@@ -329,8 +329,11 @@ struct Scene {
     const auto red = as_view(frame.red);
     const auto green = as_view(frame.green);
     rows.start(red, green, scale, 0);
+    std::vector<S> of_red(static_cast<std::size_t>(area.cols + 64)), of_green = of_red;
     for (Index i = 0; i < area.rows; ++i) {
-      rows.next(red, green, scale, &out.red(i, 0), &out.green(i, 0));
+      rows.next(red, green, scale, of_red.data(), of_green.data());
+      std::copy_n(of_red.data(), area.cols, &out.red(i, 0));
+      std::copy_n(of_green.data(), area.cols, &out.green(i, 0));
     }
     return out;
   }

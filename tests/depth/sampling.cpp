@@ -128,7 +128,7 @@ TEST_CASE("rows without a column are read into nothing", "[sampling]") {
   const StridedView<const std::uint8_t> red(bgr.data() + 5, 1, 0, 12, 3);
   const StridedView<const std::uint8_t> green(bgr.data() + 4, 1, 0, 12, 3);
   std::vector<std::uint8_t> to_red(3, std::uint8_t(5)), to_green = to_red;
-  detail::load_pixels(red, green, 0, to_red.data() + 1, to_green.data() + 1);
+  detail::load_pixels(red, green, 0, 0, 0, to_red.data() + 1, to_green.data() + 1);
   CHECK(to_red == std::vector<std::uint8_t>(3, std::uint8_t(5)));
   CHECK(to_green == to_red);
 }

@@ -17,7 +17,7 @@ namespace hard {
 
 inline Row long_image() {
   return row("window means", "400 dim rows below 40 bright ones (1000 : 1), window of 5; relative",
-             "float summed in double; double begins anew every 32 rows", []<class S>(S) {
+             "exact sums of whole numbers of 2^-38", []<class S>(S) {
                Forms f;
                const fingerpad::Index rows = 440, cols = 9;
                test::Frame<S> frame(rows, cols);
@@ -28,10 +28,11 @@ inline Row long_image() {
                    frame.green(i, j) = S(100 * wave);
                  }
                }
-               const auto load = [&](fingerpad::Index row, S* red, S* green, std::uint8_t* counts) {
+               const auto load = [&](fingerpad::Index row, std::int64_t* red, std::int64_t* green,
+                                     std::uint8_t* counts) {
                  for (fingerpad::Index j = 0; j < cols; ++j) {
-                   red[j] = frame.red(row, j);
-                   green[j] = frame.green(row, j);
+                   red[j] = static_cast<std::int64_t>(frame.red(row, j) * S(0x1p38));
+                   green[j] = static_cast<std::int64_t>(frame.green(row, j) * S(0x1p38));
                    counts[j] = 1;
                  }
                };
@@ -41,7 +42,7 @@ inline Row long_image() {
                  }
                  return sum;
                };
-               fingerpad::detail::WindowMeans<S> sums(rows, cols, {5, 7});
+               fingerpad::detail::WindowMeans<std::int64_t, S> sums(rows, cols, {5, 7});
                sums.start(0, load);
                std::vector<S> red(64), green(64), outer(64);
                S running = S(0);
@@ -60,7 +61,7 @@ inline Row long_image() {
                    }
                    exact /= 25;
                    f.naive.add_relative(running / S(25), exact);
-                   f.stable.add_relative(red[4], exact);
+                   f.stable.add_relative(red[4] / S(0x1p38), exact);
                  }
                }
                return f;

@@ -106,15 +106,16 @@ class DepthEstimator {
         green_(red_.size()),
         depth_(red_.size()),
         status_(red_.size()),
-        pad_pixels_(colours_.pixels_used()) {
+        pad_pixels_(0) {
     for (Index i = 0; i < pad_.rows; ++i) {
-      const std::uint8_t* used = colours_.used(i);
+      const S* per_g = colours_.per_g(i);
       Span& span = span_[static_cast<std::size_t>(i)];
-      while (span.first < pad_.cols && used[span.first] == 0) {
+      while (span.first < pad_.cols && per_g[span.first] == S(0)) {
         ++span.first;
       }
       for (Index j = span.first; j < pad_.cols; ++j) {
-        span.last = used[j] != 0 ? j + 1 : span.last;
+        span.last = per_g[j] > S(0) ? j + 1 : span.last;
+        pad_pixels_ += per_g[j] > S(0) ? 1 : 0;
       }
     }
   }

@@ -119,7 +119,7 @@ class FrameSampler {
         }
       }
       for (Index k = 0; k < Step; ++k) {
-        detail::load_pixels(from_red, from_green, i * Step + k, red_.data() + k * cols,
+        detail::load_pixels(from_red, from_green, i * Step + k, 0, cols, red_.data() + k * cols,
                             green_.data() + k * cols);
       }
       average({red_.data(), green_.data(), cols}, to_red, to_green, i);

@@ -21,7 +21,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -37,75 +36,42 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// The integer pixels inside an open interval as a closed range; [1, 0] if there are none.
-template <std::unsigned_integral Pixel>
-struct ClosedRange {
-  Pixel low = 1;
-  Pixel high = 0;
-
-  ClosedRange(double dark, double saturated) {
-    const double top = double((std::numeric_limits<Pixel>::max)());
-    const double first = (std::max)(0.0, std::floor(dark) + 1);
-    const double last = (std::min)(top, std::ceil(saturated) - 1);
-    if (dark < saturated && first <= last) {  // not for NaN
-      low = static_cast<Pixel>(first);
-      high = static_cast<Pixel>(last);
-    }
-  }
-};
-
-/// Copies one row of each channel to plain memory.
+/// Reads columns [col, col + n) of a row of both channels.
 template <class Red, class Green, class Pixel>
-void load_pixels(const Red& red, const Green& green, Index row, Pixel* to_red, Pixel* to_green) {
-  for (Index j = 0; j < red.cols(); ++j) {
-    to_red[j] = static_cast<Pixel>(red(row, j));
-    to_green[j] = static_cast<Pixel>(green(row, j));
-  }
-}
-/// The same for images in plain memory. Two channels of one interleaved image are read together.
-template <std::unsigned_integral Pixel>
-void load_pixels(const StridedView<const Pixel>& red,
-                 const StridedView<const Pixel>& green,
+void load_pixels(const Red& red,
+                 const Green& green,
                  Index row,
+                 Index col,
+                 Index n,
                  Pixel* to_red,
                  Pixel* to_green) {
-  const Pixel* r = red.row(row);
-  const Pixel* g = green.row(row);
-  const Index step = red.col_stride();
-  const Index n = red.cols();
-  if (step == 1 && green.col_stride() == 1) {
-    std::copy_n(r, n, to_red);
-    std::copy_n(g, n, to_green);
-    return;
-  }
   Index done = 0;
-  const bool together = n > 0 && step == green.col_stride() && r - g < step && g - r < step;
-  if (together && (step == 3 || step == 4)) {
-    // The last pixel is left to the loop below. It is not known which channel of a pixel `first`
-    // is, and a block from there on may reach past the last pixel.
-    const Pixel* first = (std::min)(r, g);
-    const auto red_at = static_cast<int>(r - first);
-    const auto green_at = static_cast<int>(g - first);
-    done = n - 1;
-    if (step == 3) {
-      load_interleaved_row<3>(first, done, red_at, green_at, to_red, to_green);
-    } else {
-      load_interleaved_row<4>(first, done, red_at, green_at, to_red, to_green);
+  if constexpr (plain_rows<Red, Pixel> && plain_rows<Green, Pixel>) {
+    const Index step = red.col_stride();
+    const Pixel* r = red.row(row) + col * step;
+    const Pixel* g = green.row(row) + col * green.col_stride();
+    if (step == 1 && green.col_stride() == 1) {
+      std::copy_n(r, n, to_red);
+      std::copy_n(g, n, to_green);
+      return;
+    }
+    if constexpr (std::same_as<Pixel, std::uint8_t>) {
+      if (n > 0 && step == green.col_stride() && r - g < step && g - r < step) {
+        // Two channels of one image. The last pixel of a row is left to the loop below: which of
+        // its channels comes first is not known, and a vector may reach past it.
+        const Pixel* first = (std::min)(r, g);
+        const Index whole = col + n < red.cols() ? n : n - 1;
+        done = step == 3 ? load_interleaved<3>(first, whole, r - first, g - first, to_red, to_green)
+               : step == 4
+                   ? load_interleaved<4>(first, whole, r - first, g - first, to_red, to_green)
+                   : 0;
+      }
     }
   }
   for (Index j = done; j < n; ++j) {
-    to_red[j] = r[j * step];
-    to_green[j] = g[j * green.col_stride()];
+    to_red[j] = static_cast<Pixel>(red(row, col + j));
+    to_green[j] = static_cast<Pixel>(green(row, col + j));
   }
-}
-template <std::unsigned_integral Pixel>
-void load_pixels(const StridedView<Pixel>& red,
-                 const StridedView<Pixel>& green,
-                 Index row,
-                 Pixel* to_red,
-                 Pixel* to_green) {
-  load_pixels(StridedView<const Pixel>(red), StridedView<const Pixel>(green), row, to_red,
-              to_green);
 }
 
 /// The odd number nearest to x, at least 3.
@@ -124,14 +90,6 @@ inline std::array<int, 2> two_windows(int window_px, int step) {
 template <class S>
 class ColourRows {
  public:
-  /// The type in which cells are read: 8- and 16-bit images are averaged exactly as integers with
-  /// means in float, all others in S.
-  template <class Cell>
-  using pixel_t = std::conditional_t<std::same_as<S, float> && (std::same_as<Cell, std::uint8_t> ||
-                                                                std::same_as<Cell, std::uint16_t>),
-                                     Cell,
-                                     S>;
-
   ColourRows(const Camera<double>& camera,
              const Absorption<double>& fluid,
              const DepthReference<S>& reference,
@@ -141,11 +99,9 @@ class ColourRows {
       : cols_(area.cols),
         kappa_(S(fluid.kappa)),
         rise_(padded(area.rows * area.cols), S(1)),
-        scattered_(rise_.size(), S(0)),
-        per_g_(rise_.size(), S(0)),
-        gain_(reference.red_gain.empty() ? padded(area.cols) : rise_.size(), S(1)),
-        used_(rise_.size(), 0),
-        pixels_(Pair<std::uint8_t>(cols_), Pair<std::uint16_t>(cols_), Pair<S>(cols_)) {
+        scattered_(rise_.size()),
+        per_g_(rise_.size()),
+        gain_(reference.red_gain.empty() ? padded(area.cols) : rise_.size(), S(1)) {
     const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
     each_pixel(area.rows, area.cols, [&](Index i, Index j) {
       const Index row = area.row + i, col = area.col + j;
@@ -161,7 +117,6 @@ class ColourRows {
         if (!reference.red_gain.empty()) {
           gain_[k] = gain;
         }
-        used_[k] = 1;
       }
     });
     if (window_px > 1) {
@@ -169,175 +124,193 @@ class ColourRows {
       const double inner = size[0] * size[0] - 1;  // 12 times the second moment
       const double outer = size[1] * size[1] - 1;
       weight_ = {S(outer / (outer - inner)), S(-inner / (outer - inner))};
-      real_means_.emplace(area.rows, cols_, size);
+      wide_means_.emplace(area.rows, cols_, size);
       if constexpr (std::same_as<S, float>) {
-        exact_means_.emplace(area.rows, cols_, size);
+        short_means_.emplace(area.rows, cols_, size);
       }
-      inner_ = Pair<S>(cols_);
-      outer_red_ = inner_.red;
+      inner_red_.resize(padded(cols_));
+      inner_green_ = outer_red_ = inner_red_;
     }
   }
 
   /// 1 / g of the pixels of a row, with a block of spare elements; 0 where a pixel is not used.
   const S* per_g(Index row) const { return per_g_.data() + row * cols_; }
-  const std::uint8_t* used(Index row) const { return used_.data() + row * cols_; }
-  Index pixels_used() const { return std::count(used_.begin(), used_.end(), std::uint8_t(1)); }
 
   /// Begins with row `first` of a frame.
   template <class Red, class Green>
   void start(const Red& red, const Green& green, const GreyScale& scale, Index first) {
     row_ = first;
-    if (real_means_) {
-      means<pixel_t<cell_t<Red>>>().start(first, source(red, green, scale));
+    if (wide_means_) {
+      means<element_t<cell_t<Red>>>().start(first, source(red, green, scale));
     }
   }
 
-  /// Writes the next row. Red is multiplied by the pixel's gain.
+  /// Writes the next row, in memory for whole blocks of 64. Red is multiplied by the pixel's gain.
   template <class Red, class Green>
   void next(const Red& red, const Green& green, const GreyScale& scale, S* to_red, S* to_green) {
-    using Pixel = pixel_t<cell_t<Red>>;
-    if (real_means_) {
-      means<Pixel>().advance(source(red, green, scale), inner_.red.data(), inner_.green.data(),
-                             outer_red_.data());
-      finish<Pixel>(row_++, to_red, to_green);
+    using Element = element_t<cell_t<Red>>;
+    const Index row = row_++;
+    if (!wide_means_) {
+      std::uint8_t counts[block];
+      each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
+        mark(r, g, per_g(row) + j, scale, counts);
+        single(r, g, gain(row) + j, counts, scale, to_red + j, to_green + j);
+      });
       return;
     }
-    auto& from = pixels<Pixel>();
-    load_pixels(red, green, row_, from.red.data(), from.green.data());
-    const std::uint8_t* used = this->used(row_);
-    const S* gain = this->gain(row_++);
-    const S level = S(1 / scale.units_per_level);
-    for (Index j = 0; j < cols_; ++j) {
-      const S r = S(from.red[std::size_t(j)]), g = S(from.green[std::size_t(j)]);
-      const bool counts = used[j] != 0 && scale.counts(r) && scale.counts(g);
-      to_red[j] = counts ? r * level * gain[j] : not_a_number<S>();
-      to_green[j] = counts ? g * level : not_a_number<S>();
+    means<Element>().advance(source(red, green, scale), inner_red_.data(), inner_green_.data(),
+                             outer_red_.data());
+    for (Index j = 0; j < cols_; j += block) {
+      finish<Element>(row, j, to_red + j, to_green + j);
     }
   }
 
  private:
-  template <class T>
-  struct Pair {
-    std::vector<T> red, green;
-    explicit Pair(Index cols = 0) : red(padded(cols)), green(padded(cols)) {}
-  };
-
-  // Integer pixels are averaged as 16-bit numbers: residuals in steps of 1/128 grey level around
-  // the middle of the range, green in steps of 1/256.
-  template <class Pixel>
-  using Element = std::conditional_t<std::integral<Pixel>, std::uint16_t, Pixel>;
-  static constexpr int residual_units = 128;
-  static constexpr int residual_zero = 32768;
-  static constexpr int green_units = 256;
   static constexpr Index block = 64;
-
   /// Size of a row that may be read in whole blocks.
   static constexpr std::size_t padded(Index count) { return std::size_t(count + block); }
 
-  template <class Pixel>
-  Pair<Pixel>& pixels() {
-    return std::get<Pair<Pixel>>(pixels_);
-  }
-  template <class Pixel>
+  template <class Cell>
+  static constexpr bool is_short =
+      std::same_as<Cell, std::uint8_t> || std::same_as<Cell, std::uint16_t>;
+  template <class Cell>
+  using pixel_t = std::conditional_t<is_short<Cell>, Cell, S>;  ///< as a cell is read
+
+  // Pixels are averaged as whole numbers of steps: for float, 8- and 16-bit pixels in 16 bits with
+  // residuals around the middle of their range, all others in 64 bits.
+  template <class Cell>
+  using element_t =
+      std::conditional_t<is_short<Cell> && std::same_as<S, float>, std::uint16_t, std::int64_t>;
+  template <class Element, S for_16_bits, S for_64_bits>
+  static constexpr S either = sizeof(Element) == 2 ? for_16_bits : for_64_bits;
+  template <class E>
+  static constexpr S residual_steps = either<E, S(128), S(0x1p38)>;  ///< in a grey level
+  template <class E>
+  static constexpr S green_steps = either<E, S(256), S(0x1p38)>;
+  template <class E>
+  static constexpr S middle = either<E, S(32768), S(0)>;
+  template <class E>
+  static constexpr S low = either<E, S(0), S(-0x1p47)>;
+  template <class E>
+  static constexpr S high = either<E, S(65535), S(0x1p47)>;
+
+  template <class Element>
   auto& means() {
-    if constexpr (std::integral<Pixel>) {
-      return *exact_means_;
+    if constexpr (sizeof(Element) == 2) {
+      return *short_means_;
     } else {
-      return *real_means_;
+      return *wide_means_;
     }
   }
   const S* gain(Index row) const {
     return gain_.data() + (gain_.size() == rise_.size() ? row * cols_ : 0);
   }
 
+  /// Calls visit(j, red, green) for each block of pixels of a row, from column j on.
+  template <class Red, class Green, class Visit>
+  void each_block(const Red& red, const Green& green, Index row, const Visit& visit) const {
+    for (Index j = 0; j < cols_; j += block) {
+      pixel_t<cell_t<Red>> reds[block] = {}, greens[block] = {};
+      load_pixels(red, green, row, j, (std::min)(block, cols_ - j), reds, greens);
+      visit(j, reds, greens);
+    }
+  }
+
   /// The row source of the window means: residuals and green of a row, and which pixels count.
   template <class Red, class Green>
-  auto source(const Red& red, const Green& green, const GreyScale& scale) {
-    using Pixel = pixel_t<cell_t<Red>>;
-    return [this, &red, &green, &scale](Index row, Element<Pixel>* residual,
-                                        Element<Pixel>* to_green, std::uint8_t* counts) {
-      auto& from = pixels<Pixel>();
-      load_pixels(red, green, row, from.red.data(), from.green.data());
-      load_residuals(row, from.red.data(), from.green.data(), scale, residual, to_green, counts);
+  auto source(const Red& red, const Green& green, const GreyScale& scale) const {
+    return [&, this](Index row, auto* residual, auto* to_green, std::uint8_t* counts) {
+      each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
+        mark(r, g, per_g(row) + j, scale, counts + j);
+        store(row, j, r, g, counts + j, scale, residual + j, to_green + j);
+      });
     };
   }
 
+  // Loops over a block, on vectors: see window_means.hpp.
+
   template <class Pixel>
-  void load_residuals(Index row,
-                      const Pixel* red,
-                      const Pixel* green,
-                      const GreyScale& scale,
-                      Element<Pixel>* residual,
-                      Element<Pixel>* to_green,
-                      std::uint8_t* counts) const {
-    const S* rise = rise_.data() + row * cols_;
-    const S* scattered = scattered_.data() + row * cols_;
-    const S* gain = this->gain(row);
-    const std::uint8_t* used = this->used(row);
-    const S level = S(1 / scale.units_per_level);
-    const S kappa = kappa_ * level;
-    if constexpr (std::integral<Pixel>) {
-      const ClosedRange<Pixel> range(scale.dark, scale.saturated);
-      for (Index j = 0; j < cols_; j += block) {
-        mark(range, red + j, green + j, used + j, counts + j);
-      }
-      const S units = S(residual_units);
-      const S zero = S(residual_zero) + S(0.5);  // + 1/2: truncation then rounds
-      for_each_cell<S>(cols_, [&]<class V>(Index j) {
-        const V b = load_cells<V, S>(green + j) * level;
-        const V gained = load_cells<V, S>(red + j) * (load_cells<V, S>(gain + j) * kappa);
-        const V membrane = load_cells<V, S>(rise + j) * b;
-        const V stored = (membrane + (load_cells<V, S>(scattered + j) - gained)) * units + zero;
-        const V low = V{} + S(1);
-        const V high = V{} + S(65535);
-        store_cells<S>(residual + j, stored < low ? low : stored > high ? high : stored);
-        const V scaled = b * S(green_units);
-        store_cells<S>(to_green + j, scaled > high ? high : scaled);
-      });
-    } else {
-      for (Index j = 0; j < cols_; ++j) {
-        const S b = green[j] * level;
-        residual[j] = rise[j] * b - kappa * gain[j] * red[j] + scattered[j];
-        to_green[j] = b;
-        counts[j] = used[j] != 0 && scale.counts(red[j]) && scale.counts(green[j]);
-      }
+  [[gnu::noinline]] static void mark(const Pixel* red,
+                                     const Pixel* green,
+                                     const S* per_g,
+                                     const GreyScale& scale,
+                                     std::uint8_t* __restrict counts) {
+    using Number = std::conditional_t<is_short<Pixel>, std::int32_t, S>;
+    const auto limit = [](double whole, double any) {
+      return is_short<Pixel> ? Number((std::clamp)(whole, -1.0, 65536.0)) : Number(any);
+    };
+    const Number dark = limit(std::floor(scale.dark), scale.dark);
+    const Number saturated = limit(std::ceil(scale.saturated), scale.saturated);
+    for (Index i = 0; i < block; ++i) {
+      const Number r = Number(red[i]), g = Number(green[i]);
+      counts[i] = std::uint8_t(int(per_g[i] > S(0)) & int(r > dark) & int(r < saturated) &
+                               int(g > dark) & int(g < saturated));
     }
   }
 
   template <class Pixel>
-  static void mark(const ClosedRange<Pixel>& range,
-                   const Pixel* red,
-                   const Pixel* green,
-                   const std::uint8_t* used,
-                   std::uint8_t* __restrict counts) {
+  [[gnu::noinline]] static void single(const Pixel* red,
+                                       const Pixel* green,
+                                       const S* gain,
+                                       const std::uint8_t* counts,
+                                       const GreyScale& scale,
+                                       S* __restrict to_red,
+                                       S* __restrict to_green) {
+    const S level = S(1 / scale.units_per_level);
     for (Index i = 0; i < block; ++i) {
-      const bool in_range = (red[i] >= range.low) & (red[i] <= range.high) &
-                            (green[i] >= range.low) & (green[i] <= range.high);
-      counts[i] = std::uint8_t(used[i] & -int(in_range));
+      const S one = S(counts[i]) / S(counts[i]);  // NaN where the pixel does not count
+      to_red[i] = S(red[i]) * level * gain[i] * one;
+      to_green[i] = S(green[i]) * level * one;
+    }
+  }
+
+  template <class Pixel, class Element>
+  [[gnu::noinline]] void store(Index row,
+                               Index col,
+                               const Pixel* red,
+                               const Pixel* green,
+                               const std::uint8_t* counts,
+                               const GreyScale& scale,
+                               Element* __restrict residual,
+                               Element* __restrict to_green) const {
+    const S* rise = rise_.data() + row * cols_ + col;
+    const S* scattered = scattered_.data() + row * cols_ + col;
+    const S* gain = this->gain(row) + col;
+    const S level = S(1 / scale.units_per_level), kappa = kappa_ * level;
+    const auto whole = [](S x) __attribute__((always_inline)) {  // NaN: the lowest
+      x = x > low<Element> ? x : low<Element>;
+      x = x < high<Element> ? x : high<Element>;
+      return std::conditional_t<sizeof(Element) == 2, std::int32_t, std::int64_t>(x);
+    };
+    constexpr S zero = middle<Element> + S(0.5);  // + 1/2: truncation then rounds
+    for (Index i = 0; i < block; ++i) {
+      const S b = S(green[i]) * level;
+      const S r = rise[i] * b + (scattered[i] - S(red[i]) * (gain[i] * kappa));
+      residual[i] = Element(whole(r * residual_steps<Element> + zero) & -int(counts[i]));
+      to_green[i] = Element(whole(b * green_steps<Element>) & -int(counts[i]));
     }
   }
 
   /// Combines the means of the windows and converts residuals back to red. If a pixel's inner
   /// window holds no valid pixel, its mean is NaN and so is the result. Green needs only one
   /// window, because its share in the equation is small.
-  template <class Pixel>
-  void finish(Index row, S* to_red, S* to_green) const {
-    const S* rise = rise_.data() + row * cols_;
-    const S* scattered = scattered_.data() + row * cols_;
-    const S per_kappa = S(1) / kappa_;
-    for_each_cell<S>(cols_, [&]<class V>(Index j) {
-      V residual = weight_[0] * load_cells<V, S>(inner_.red.data() + j) +
-                   weight_[1] * load_cells<V, S>(outer_red_.data() + j);
-      V green = load_cells<V, S>(inner_.green.data() + j);
-      if constexpr (std::integral<Pixel>) {
-        green = green * (S(1) / S(green_units));
-        residual = (residual - S(residual_zero)) * (S(1) / S(residual_units));
-      }
-      const V membrane = load_cells<V, S>(rise + j) * green;
-      const V red = (membrane + load_cells<V, S>(scattered + j) - residual) * per_kappa;
-      store_cells<S>(to_red + j, red);
-      store_cells<S>(to_green + j, green);
-    });
+  template <class Element>
+  [[gnu::noinline]] void finish(Index row,
+                                Index col,
+                                S* __restrict to_red,
+                                S* __restrict to_green) const {
+    const S* rise = rise_.data() + row * cols_ + col;
+    const S* scattered = scattered_.data() + row * cols_ + col;
+    const S* inner = inner_red_.data() + col;
+    const S* outer = outer_red_.data() + col;
+    const S* green = inner_green_.data() + col;
+    const S per_kappa = S(1) / kappa_, a = weight_[0], b = weight_[1];
+    for (Index i = 0; i < block; ++i) {
+      const S steps = a * inner[i] + b * outer[i] - middle<Element>;
+      const S g = green[i] * (1 / green_steps<Element>);
+      to_red[i] = (rise[i] * g + scattered[i] - steps * (1 / residual_steps<Element>)) * per_kappa;
+      to_green[i] = g;
+    }
   }
 
   Index cols_;
@@ -347,13 +320,10 @@ class ColourRows {
   std::vector<S> scattered_;  // g W(l0), grey levels
   std::vector<S> per_g_;
   std::vector<S> gain_;  // a plane, or one row of 1
-  std::vector<std::uint8_t> used_;
-  std::tuple<Pair<std::uint8_t>, Pair<std::uint16_t>, Pair<S>> pixels_;
-  std::optional<WindowMeans<S>> real_means_;  // empty: no window
-  std::optional<WindowMeans<std::uint16_t>> exact_means_;
+  std::optional<WindowMeans<std::uint16_t>> short_means_;
+  std::optional<WindowMeans<std::int64_t, S>> wide_means_;  // empty: no window
   std::array<S, 2> weight_ = {};
-  Pair<S> inner_;  // means over the windows
-  std::vector<S> outer_red_;
+  std::vector<S> inner_red_, inner_green_, outer_red_;  // means over the windows
   Index row_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Two channels of an interleaved row (BGR, RGBA, ...) as two contiguous rows.
+// Two channels of an interleaved row of bytes (BGR, RGBA, ...) as two contiguous rows.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace detail {
 #if defined(FINGERPAD_HAS_VECTORS)
 using Bytes16 = lanes<std::uint8_t, 16>;
 
-/// Interleaves the low (or high) eight bytes of a with eight bytes of b.
+/// Interleaves the low (or high) eight bytes of a with the low (or high) eight of b.
 [[gnu::always_inline]] inline Bytes16 mix_low(Bytes16 a, Bytes16 b) {
   return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
 }
@@ -39,32 +39,32 @@ using Bytes16 = lanes<std::uint8_t, 16>;
 }
 #endif
 
-/// red[i] = from[channels i + red_offset], and likewise green, for i < n. Rows of 3 or 4 bytes a
-/// pixel go by vectors: interleaving their halves four times brings byte C i + c to i + 16 c.
-template <int channels, class Pixel>
-void load_interleaved_row(
-    const Pixel* from, Index n, int red_offset, int green_offset, Pixel* red, Pixel* green) {
+/// red[i] = from[channels i + red_offset], and likewise green, for as many i < n as whole vectors
+/// hold; returns how many. Interleaving the halves of 16 pixels four times brings byte C i + c to
+/// i + 16 c.
+template <std::size_t channels>
+Index load_interleaved(const std::uint8_t* from,
+                       Index n,
+                       Index red_offset,
+                       Index green_offset,
+                       std::uint8_t* red,
+                       std::uint8_t* green) {
   Index i = 0;
 #if defined(FINGERPAD_HAS_VECTORS)
-  if constexpr (sizeof(Pixel) == 1 && (channels == 3 || channels == 4)) {
-    for (; i + 16 <= n; i += 16) {
-      std::array<Bytes16, std::size_t(channels)> planes;
-      for (std::size_t c = 0; c < planes.size(); ++c) {
-        planes[c] = load<Bytes16>(from + channels * i + 16 * Index(c));
-      }
-      mix(planes);
-      mix(planes);
-      mix(planes);
-      mix(planes);
-      store(red + i, planes[std::size_t(red_offset)]);
-      store(green + i, planes[std::size_t(green_offset)]);
+  for (; i + 16 <= n; i += 16) {
+    std::array<Bytes16, channels> planes;
+    for (std::size_t c = 0; c < channels; ++c) {
+      planes[c] = load<Bytes16>(from + Index(channels) * i + 16 * Index(c));
     }
+    mix(planes);
+    mix(planes);
+    mix(planes);
+    mix(planes);
+    store(red + i, planes[std::size_t(red_offset)]);
+    store(green + i, planes[std::size_t(green_offset)]);
   }
 #endif
-  for (; i < n; ++i) {
-    red[i] = from[channels * i + red_offset];
-    green[i] = from[channels * i + green_offset];
-  }
+  return i;
 }
 
 }  // namespace detail
