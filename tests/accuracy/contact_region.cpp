@@ -84,10 +84,10 @@ TEST_CASE("contact of finite-element membranes by their heights", "[contact_regi
     CHECK(r.regions == 1);
   };
   // the goal is 0.95
-  check("press", 0.94);      // 0.949 measured
-  check("tilt", 0.92);       // 0.929
+  check("press", 0.945);     // 0.958 measured
+  check("tilt", 0.93);       // 0.936
   check("roll", 0.905);      // 0.914
-  check("cylinder", 0.905);  // 0.914
+  check("cylinder", 0.905);  // 0.913
   CHECK(region(exact.depth("free"), mask).contact_px == 0);
 }
 
@@ -120,8 +120,8 @@ TEST_CASE("contact of finite-element membranes by noisy frames", "[contact_regio
     INFO(name << ": overlap " << o.share << ", area ratio " << o.area_ratio);
     CHECK(o.share >= least);
   };
-  check("press", 0.885);    // 0.896 measured, goal 0.90
-  check("tilt", 0.90);      // 0.911, goal 0.90
-  check("roll", 0.89);      // 0.914, goal 0.85
-  check("cylinder", 0.87);  // 0.888, goal 0.85
+  check("press", 0.89);     // 0.904 measured, goal 0.90
+  check("tilt", 0.91);      // 0.921, goal 0.90
+  check("roll", 0.89);      // 0.911, goal 0.85
+  check("cylinder", 0.87);  // 0.887, goal 0.85
 }

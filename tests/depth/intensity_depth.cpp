@@ -221,7 +221,7 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     }
     const OrthographicCamera<double> plan{59.5, 47.5, PressedBall::mm_per_px};
     const auto surface = fit_surface(plan, before.height_mm, inner);
-    RC_ASSERT(surface.status == SurfaceStatus::ok);
+    RC_ASSERT(surface.ok());
     const double curvature = (surface.curvature_1_per_mm + surface.curvature_2_per_mm) / 2;
     RC_LOG() << 1 / curvature << " mm for " << ball.ball_mm << "\n";
     // the standard error assumes independent pixels, but the mean over 2 px correlates them

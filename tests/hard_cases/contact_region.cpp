@@ -12,8 +12,8 @@
 #include "support/numbers.hpp"
 
 using namespace fingerpad;
-using detail::edge_level;
 using detail::edge_share;
+using detail::share_at_end;
 using test::Digits50;
 
 namespace test {
@@ -105,28 +105,22 @@ TEST_CASE("the share's derivative by dual numbers", "[contact_region]") {
 TEST_CASE("a round edge curves away from the ring", "[contact_region]") {
   for (const double ratio : {0.001, 0.01, 0.1, 0.3}) {
     const double exact = share_on_round_edge(ratio, 1);
-    const double level = edge_level(0.0, 1.0, 0.0, ratio, 1.0);
-    CHECK(level == Approx(exact).margin(0.03 * ratio * ratio + 1e-9));  // to first order
+    const double share = share_at_end(1.0, 0.0, ratio, 1.0);
+    CHECK(share == Approx(exact).margin(0.03 * ratio * ratio + 1e-9));  // to first order
   }
 }
 
-TEMPLATE_TEST_CASE("the level of the edge lies between inside and outside",
-                   "[contact_region]",
-                   float,
-                   double,
-                   test::Digits50) {
+TEMPLATE_TEST_CASE(
+    "a contact ends beyond half of the jump", "[contact_region]", float, double, test::Digits50) {
   using S = TestType;
   rc::prop("for every contact", [] {
-    const S inside = static_cast<S>(test::uniform(-0.2, 0.02));
-    const S outside = static_cast<S>(inside + S(test::log_uniform(1e-6, 0.2)));
+    const S jump = static_cast<S>(test::log_uniform(1e-6, 0.4));
     const S gap = static_cast<S>(test::whole(0, 3) == 0 ? 0.0 : test::log_uniform(1e-9, 1));
     const S ring = static_cast<S>(test::log_uniform(0.05, 5));
     const S patch = static_cast<S>(test::log_uniform(0.05, 20));
-    const S level = edge_level(inside, outside, gap, ring, patch);
-    const S half = static_cast<S>((inside + outside) / S(2));
-    RC_ASSERT(!(level < half - S(1e-7)));
-    RC_ASSERT(!(outside + S(1e-7) < level));
-    const S wider = edge_level(inside, outside, static_cast<S>(S(2) * gap), ring, patch);
-    RC_ASSERT(!(wider + S(1e-7) < level));
+    const S share = share_at_end(jump, gap, ring, patch);
+    RC_ASSERT(!(share < S(0.5) - S(1e-6)));
+    RC_ASSERT(!(S(1) < share));
+    RC_ASSERT(!(share_at_end(jump, static_cast<S>(S(2) * gap), ring, patch) + S(1e-6) < share));
   });
 }

@@ -214,7 +214,7 @@ std::string of_surface(const std::string& mistake) {
     return s.point_mm + 2 / (s.curvature_1_per_mm + s.curvature_2_per_mm) * s.normal;
   };
   const bool same = norm(middle(r) - middle(right)) < 0.1;
-  return !r.ok() ? (name_of(r.status)) : same ? "found" : "another object";
+  return !r.ok() ? "no answer" : same ? "found" : "another object";
 }
 
 std::string of_light(const std::string& mistake) {
@@ -260,7 +260,7 @@ struct Said {
 
 const std::vector<Said> table = {
     {"none", "found", "found", "found", "found", "found", "found"},
-    {"x 1000", "not of this pad", "not of this pad", "not of this pad", "too few",
+    {"x 1000", "not of this pad", "not of this pad", "not of this pad", "no answer",
      "not of this pad", "no answer"},
     {"/ 1000", "not of this pad", "not of this pad", "not of this pad", "another object",
      "not of this pad", "found"},
@@ -276,7 +276,7 @@ const std::vector<Said> table = {
     {"constant", "not of this pad", "not of this pad", "another contact", "another object",
      "another depth", "no answer"},
     {"half missing", "found", "found", "mostly unknown", "found", "found", "no answer"},
-    {"no number", "not of this pad", "not of this pad", "not of this pad", "too few", "found",
+    {"no number", "not of this pad", "not of this pad", "not of this pad", "no answer", "found",
      "no answer"},
     {"the free pad for now", "another depth", "no contact", "no contact", "another object",
      "another depth", "another area"},

@@ -222,7 +222,6 @@ TEST_CASE("surface: whatever comes in, an ok result holds finite numbers", "[sur
       camera.pitch_mm = pitch_mm;
       camera.center_x_px = test::uniform(-10, 10);
       const auto r = fit_surface(camera, depth, mask);
-      RC_ASSERT(r.status != SurfaceStatus::refused);
       const std::array numbers = {r.curvature_1_per_mm,
                                   r.curvature_2_per_mm,
                                   r.curvature_1_sd_per_mm,

@@ -11,20 +11,25 @@
 // there is contact; its edge is then placed where the plain mean is half way between object and
 // free membrane (contact/detail/edge.hpp).
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "fingerpad/contact/detail/edge.hpp"
+#include "fingerpad/contact/detail/regions.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
-#include "fingerpad/image/detail/regions.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -81,8 +86,8 @@ struct [[nodiscard]] ContactResult {
 /// The contact region of depth maps of one size, computed in the scalar S.
 /// published/contact_region.hpp is the test as printed.
 /// A pixel without depth is never contact. A pixel whose ring is partly missing is judged by the
-/// remaining directions; if these are too few (ContactTest::ring) it is unknown. All
-/// contacts of a frame are compared with one level of the free membrane around them.
+/// remaining directions; if these are too few (ContactTest::ring) it is unknown. All contacts of a
+/// frame are compared with one free membrane, whose curvature is linear in the pixel.
 ///
 /// One object a thread. Bounded time and no allocation per frame; O(rows cols directions).
 template <scalar S = float>
@@ -93,24 +98,31 @@ class ContactRegion {
   template <class CameraType = Camera<double>>
   ContactRegion(const CameraType& camera, Index rows, Index cols, const ContactTest& test = {})
       : test_(checked(camera, rows, cols, test)),
-        image_{rows, cols},
+        eye_{static_cast<double>(value(camera.center_x_px)),
+             static_cast<double>(value(camera.center_y_px)),
+             static_cast<double>(value(camera.pitch_mm)),
+             static_cast<double>(value(camera.pixel_aspect))},
+        growth_per_mm_(static_cast<double>(value(growth_per_mm(camera)))),
+        ring_cols_(static_cast<Index>(std::ceil(test.ring.radius_px))),
+        ring_rows_(static_cast<Index>(std::ceil(test.ring.radius_px / eye_.pixel_aspect))),
+        spread_cols_((ring_cols_ + 1) / 3),
+        spread_rows_((ring_rows_ + 1) / 3),
+        image_{rows, cols, (std::max)({spread_cols_, spread_rows_, Index(1)})},
         regions_(image_),
         curvature_(camera, rows, cols, test.ring),
         statistic_(static_cast<std::size_t>(image_.size()), not_a_number<S>()),
-        edge_(image_,
-              test.ring,
-              test.touching_gap_mm,
-              static_cast<double>(value(camera.pitch_mm)),
-              static_cast<double>(value(growth_per_mm(camera))),
-              static_cast<double>(value(camera.pixel_aspect))) {
-    const auto eye = cast<double>(camera);
-    center_px_ = {eye.center_x_px, eye.center_y_px};
-    aspect_ = eye.pixel_aspect;
-    rays_.reserve(static_cast<std::size_t>(rows * cols));
+        raw_(statistic_),
+        mean_(statistic_),
+        free_(statistic_) {
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
-        rays_.push_back(detail::mm_per_px(eye, static_cast<double>(i), static_cast<double>(j)));
+        rays_.push_back(detail::mm_per_px(cast<double>(camera), static_cast<double>(i),
+                                          static_cast<double>(j)));
       }
+    }
+    for (const auto& corner : {point(0, 0, 0), point(rows - 1, cols - 1, 0)}) {
+      expects(is_plausible(norm(corner)), "ContactRegion", "camera: corner of the image, mm",
+              norm(corner), "less than a million from the axis");
     }
   }
 
@@ -130,18 +142,27 @@ class ContactRegion {
     const auto marks = regions_.marks();
     const S threshold = S(test_.threshold_per_mm);
     result.unknown_px = curvature_(depth, statistic).unknown_px;
+    detail::PixelBox seeds = {image_.rows, 0, image_.cols, 0};
     for (Index i = 0; i < image_.rows; ++i) {
-      detail::mark_below(threshold, statistic.row(i), image_.cols, marks.row(i));
+      detail::Mark *row = marks.row(i), *end = row + image_.cols;
+      detail::mark_below(threshold, statistic.row(i), image_.cols, row);
+      const detail::Mark* first = detail::find_mark(row, end, detail::Mark::seed);
+      if (first != end) {
+        while (end[-1] != detail::Mark::seed) {
+          --end;
+        }
+        seeds.include(i, first - row, end - row);
+      }
     }
-    if (test_.places_edge) {
-      edge_.prepare(curvature_, statistic_.data(), regions_, threshold + threshold);
+    if (test_.places_edge && seeds.first_row < seeds.last_row) {
+      find_curvatures(seeds);
     }
     const auto keep = [this](const detail::Regions::Region& region) {
       return region.pixels() >= test_.min_region_px;
     };
     result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
       if (test_.places_edge) {
-        edge_.place(depth, regions_, region);
+        place_edge(depth, region);
       }
     });
     write(marks, to);
@@ -166,13 +187,6 @@ class ContactRegion {
     expects_grid_size("ContactRegion", rows, cols, 2);  // areas need a neighbour
     require(camera);
     require(test);
-    const auto eye = cast<double>(camera);
-    for (const double end : {0.0, 1.0}) {  // first and last pixel
-      const auto corner = point_at(eye, end * static_cast<double>(rows - 1),
-                                   end * static_cast<double>(cols - 1), 0.0);
-      expects(is_plausible(corner), "ContactRegion", "camera: corner of the image, mm",
-              corner.x + corner.y, "less than a million from the axis");
-    }
     return test;
   }
 
@@ -209,11 +223,95 @@ class ContactRegion {
     }
   }
 
+  /// Whether the ring of a pixel sees free membrane alone: no seed here nor a ring's radius away.
+  bool is_free(const StridedView<detail::Mark>& marks, Index row, Index col) const {
+    bool is_free = marks(row, col) == detail::Mark::free;
+    for (const Index i : {row - ring_rows_, row, row + ring_rows_}) {
+      for (const Index j : {col - ring_cols_, col, col + ring_cols_}) {
+        is_free = is_free && marks(std::clamp(i, Index(0), image_.rows - 1),
+                                   std::clamp(j, Index(0), image_.cols - 1)) != detail::Mark::seed;
+      }
+    }
+    return is_free;
+  }
+
+  /// Sets mean_ and free_ wherever a region of seeds may grow. The plane is that of the free pixels
+  /// (every fourth row and column) within three rings around all seeds. That it is level counts as
+  /// much as one pixel, which matters where few are free.
+  void find_curvatures(const detail::PixelBox& seeds) {
+    const auto grown = [&](Index rows, Index cols) {
+      return seeds.grown(rows, cols, image_.rows, image_.cols);
+    };
+    const auto part = grown(ring_rows_ + spread_rows_, ring_cols_ + spread_cols_);
+    curvature_.mean(part.first_row, part.last_row, part.first_col, part.last_col,
+                    image_.view(raw_.data()));
+    const auto reach = grown(ring_rows_, ring_cols_);
+    detail::mean_of_nine(image_.view(raw_.data()), spread_rows_, spread_cols_, reach,
+                         image_.view(mean_.data()));
+
+    const auto near = grown(3 * ring_rows_, 3 * ring_cols_);
+    detail::ProductSums<double, 4> sums;  // of 1, row, column, curvature
+    sums.add({0, static_cast<double>(near.last_row - near.first_row), 0, 0});
+    sums.add({0, 0, static_cast<double>(near.last_col - near.first_col), 0});
+    for (Index i = near.first_row; i < near.last_row; i += 4) {
+      for (Index j = near.first_col; j < near.last_col; j += 4) {
+        if (is_free(regions_.marks(), i, j)) {
+          sums.add({1, static_cast<double>(i), static_cast<double>(j),
+                    static_cast<double>(statistic()(i, j))});
+        }
+      }
+    }
+    const detail::NormalEquations<double, 3> equations(sums.corner<3>());
+    const auto plane = equations.good ? equations.solve(sums.column<3>(3))
+                                      : std::array<double, 3>{2 * test_.threshold_per_mm, 0, 0};
+    for (Index i = reach.first_row; i < reach.last_row; ++i) {
+      const S first = S(plane[0] + plane[1] * static_cast<double>(i)), step = S(plane[2]);
+      S* to = image_.view(free_.data()).row(i);
+      for (Index j = reach.first_col; j < reach.last_col; ++j) {
+        to[j] = first + step * S(static_cast<double>(j));
+      }
+    }
+  }
+
+  /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Its
+  /// properties come from one to two thousand of its pixels, or from all if there are fewer.
+  template <class View>
+  void place_edge(const View& depth_mm, detail::Regions::Region& region) {
+    samples_.clear();
+    double depth = 0, outside = 0;
+    for (Index k = region.begin; k < region.end; k += region.pixels() / most + 1) {
+      const Index at = regions_.pixel(k), pixel = at - image_.at(0, 0);
+      depth += static_cast<double>(depth_mm(pixel / image_.stride(), pixel % image_.stride()));
+      outside += static_cast<double>(free_[static_cast<std::size_t>(at)]);
+      samples_.push_back(mean_[static_cast<std::size_t>(at)]);
+    }
+    const double count = static_cast<double>(samples_.size());
+    // that of the object is at most 0 and the lower quartile, because a quarter of the pixels lie
+    // so far inside that their ring sees only the object
+    const auto quarter = samples_.begin() + static_cast<std::ptrdiff_t>(samples_.size() / 4);
+    std::nth_element(samples_.begin(), quarter, samples_.end());
+    const S inside = (std::min)(*quarter, S(0));
+    const double jump = outside / count - static_cast<double>(value(inside));
+    const double pixel_mm = eye_.pitch_mm * (1 + growth_per_mm_ * depth / count);
+    const double patch_mm = pixel_mm * std::sqrt(static_cast<double>(region.pixels()) *
+                                                 eye_.pixel_aspect / std::numbers::pi);
+    const S share = S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm,
+                                                      test_.ring.radius_px * pixel_mm, patch_mm,
+                                                      static_cast<double>(spread_cols_) * pixel_mm)
+                               : 0.0);
+    const auto within = [&](Index at) {
+      const auto pixel = static_cast<std::size_t>(at);
+      return mean_[pixel] < inside + share * (free_[pixel] - inside);
+    };
+    regions_.grow(region, (std::max)(ring_rows_, ring_cols_), within);
+    regions_.trim(region, within);
+  }
+
   Point3<double> point(Index i, Index j, double depth_mm) const {
     const auto& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
     const double mm_per_px = ray.at_plate + ray.per_mm * depth_mm;
-    return {(static_cast<double>(j) - center_px_.x) * mm_per_px,
-            (static_cast<double>(i) - center_px_.y) * aspect_ * mm_per_px, depth_mm};
+    return {(static_cast<double>(j) - eye_.center_x_px) * mm_per_px,
+            (static_cast<double>(i) - eye_.center_y_px) * eye_.pixel_aspect * mm_per_px, depth_mm};
   }
 
   /// Sums over the pixels in contact, each weighted with the area that it sees, projected on the
@@ -244,7 +342,7 @@ class ContactRegion {
         const double span = static_cast<double>((right - left) * (down - up));
         const double area = (across.x * along.y - across.y * along.x) / span;
         const double mm_per_px = ray.at_plate + ray.per_mm * depth;
-        const double positive_area = area > 0 ? area : mm_per_px * mm_per_px * aspect_;
+        const double positive_area = area > 0 ? area : mm_per_px * mm_per_px * eye_.pixel_aspect;
         ++result.contact_px;
         result.area_mm2 += positive_area;
         moment += positive_area * point(i, j, depth);
@@ -265,14 +363,18 @@ class ContactRegion {
     return !result.in_contact() || !(apex > 0) || (apex < 20 * height && height < 20 * apex);
   }
 
+  static constexpr Index most = 2000;  // samples of a region
+
   ContactTest test_;
+  OrthographicCamera<double> eye_;
+  double growth_per_mm_;
+  Index ring_cols_, ring_rows_;      // the ring's radius in whole pixels
+  Index spread_cols_, spread_rows_;  // a third of it smooths noise without moving the edge
   detail::BorderedImage image_;
   detail::Regions regions_;
   CurvatureMap<S> curvature_;
-  std::vector<S> statistic_;
-  detail::EdgePlacer<S> edge_;
-  Point2<double> center_px_ = {0, 0};
-  double aspect_ = 1;
+  std::vector<S> statistic_, raw_, mean_, free_;  // curvatures: clamped, plain, smoothed, plane
+  detail::ReservedVector<S> samples_{2 * most};
   std::vector<detail::MmPerPx<double>> rays_;
 };
 

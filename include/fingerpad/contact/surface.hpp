@@ -29,26 +29,14 @@
 namespace fingerpad {
 inline namespace v0 {
 
-enum class SurfaceStatus : unsigned char {
-  ok,
-  too_few,     ///< no more than six pixels in contact have a depth
-  degenerate,  ///< the pixels do not determine a quadric: all in one line or in two level lines, or
-               ///< on a surface that no camera could see
-  refused,     ///< the grids differ in size
-};
-
-/// "ok", "too few", "degenerate" or "refused".
-constexpr const char* name_of(SurfaceStatus status) {
-  constexpr std::array<const char*, 4> names = {"ok", "too few", "degenerate", "refused"};
-  return names[static_cast<std::size_t>(status)];
-}
-
-/// The object's surface at the middle of the contact; all numbers are NaN unless ok(). Curvatures
-/// are positive where the object is convex: where it dents the pad. Standard deviations are those
-/// of pixels with independent errors as large as the rms. A depth map averaged over w x w pixels
-/// has errors that are alike within w px: its true standard deviations are about w times larger.
+/// The object's surface at the middle of the contact. All numbers are NaN unless ok(): if grids
+/// differ in size (0 pixels), with no more than 6 pixels, and where the pixels determine no
+/// quadric: all in one line or in two level lines, or on a surface that no camera could see.
+/// Curvatures are positive where the object is convex: where it dents the pad. Standard deviations
+/// are those of pixels with independent errors as large as the rms. A depth map averaged over w x w
+/// pixels has errors that are alike within w px: its true standard deviations are about w times
+/// larger.
 struct [[nodiscard]] SurfaceResult {
-  SurfaceStatus status = SurfaceStatus::refused;
   Index pixels = 0;                                    ///< in contact with a depth
   double curvature_1_per_mm = not_a_number<double>();  ///< principal curvature, larger in magnitude
   double curvature_2_per_mm = not_a_number<double>();  ///< the other one; 0 for a cylinder
@@ -61,25 +49,10 @@ struct [[nodiscard]] SurfaceResult {
   Point3<double> normal = detail::missing_point<double>();    ///< there; unit vector to the object
   double rms_mm = not_a_number<double>();  ///< of the distances from the surface: irregularity
 
-  bool ok() const { return status == SurfaceStatus::ok; }
+  bool ok() const { return is_finite(rms_mm); }
 };
 
 namespace detail {
-
-/// The sums of all products of N terms.
-template <std::size_t N>
-struct ProductSums {
-  SmallMatrix<double, N> sum = zero_matrix<double, N>();
-
-  void add(const std::array<double, N>& term) {
-    for (std::size_t a = 0; a < N; ++a) {
-      for (std::size_t b = a; b < N; ++b) {
-        sum[a][b] += term[a] * term[b];
-      }
-    }
-  }
-  double operator()(std::size_t a, std::size_t b) const { return a < b ? sum[a][b] : sum[b][a]; }
-};
 
 /// The place of a patch: its centroid and the axes u, v, w of its best plane, w toward the object.
 struct PatchFrame {
@@ -92,7 +65,7 @@ struct PatchFrame {
   template <class Points>
   explicit PatchFrame(const Points& for_each_point) {
     std::array<double, 6> first = {};
-    ProductSums<6> sums;  // of 1, x, y, z, row, col; the others relative to the first point
+    ProductSums<double, 6> sums;  // of 1, x, y, z, row, col; the others relative to the first point
     for_each_point([&](const Point3<double>& p, double row, double col) {
       const std::array<double, 6> all = {0, p.x, p.y, p.z, row, col};
       first = pixels++ == 0 ? all : first;  // digits are kept relative to it
@@ -126,13 +99,15 @@ struct PatchFrame {
 
 /// The quadric of a patch in its own frame, by least squares: its coefficients c and g.
 struct QuadricFit {
-  using Terms = std::array<double, 6>;
+  NormalEquations<double, 6> equations;
+  std::array<double, 6> c = {};
+  double g = 0;
+  double sum_sq = 0;  // of the distances
 
-  template <class Points>
-  QuadricFit(const Points& for_each_point, const PatchFrame& frame)
-      : sums(sums_of(for_each_point, frame)), equations(normal(sums), 1e-9) {
-    const Terms of_w = column(6), of_w_sq = column(7);
-    const Terms a = equations.solve(of_w), b = equations.solve(of_w_sq);
+  /// From the sums over the points of 1, u, v, u^2, u v, v^2, w and w^2.
+  explicit QuadricFit(const ProductSums<double, 8>& sums) : equations(sums.corner<6>()) {
+    const auto of_w = sums.column<6>(6), of_w_sq = sums.column<6>(7);
+    const auto a = equations.solve(of_w), b = equations.solve(of_w_sq);
     c = a;
     for (int round = 0; round < 60; ++round) {  // each shrinks the error of g by the squared angle
       const double sum = 2 * (c[3] + c[5]), product = 4 * c[3] * c[5] - c[4] * c[4];
@@ -146,36 +121,7 @@ struct QuadricFit {
     for (std::size_t k = 0; k < c.size(); ++k) {
       sum_sq -= c[k] * (of_w[k] - g * of_w_sq[k]);
     }
-    sum_sq = sum_sq < 0 ? 0 : sum_sq;
-  }
-
-  ProductSums<8> sums;  // of 1, u, v, u^2, u v, v^2, w, w^2
-  NormalEquations<double, 6> equations;
-  Terms c = {};
-  double g = 0;
-  double sum_sq = 0;  // of the distances
-
- private:
-  template <class Points>
-  static ProductSums<8> sums_of(const Points& for_each_point, const PatchFrame& frame) {
-    ProductSums<8> sums;
-    for_each_point([&](const Point3<double>& p, double, double) {
-      const auto [u, v, w] = frame.inside(p);
-      sums.add({1, u, v, u * u, u * v, v * v, w, w * w});
-    });
-    return sums;
-  }
-  static SmallMatrix<double, 6> normal(const ProductSums<8>& sums) {
-    SmallMatrix<double, 6> matrix;
-    for (std::size_t a = 0; a < 6; ++a) {
-      for (std::size_t b = 0; b < 6; ++b) {
-        matrix[a][b] = sums(a, b);
-      }
-    }
-    return matrix;
-  }
-  Terms column(std::size_t b) const {
-    return {sums(0, b), sums(1, b), sums(2, b), sums(3, b), sums(4, b), sums(5, b)};
+    sum_sq = (std::max)(sum_sq, 0.0);
   }
 };
 
@@ -207,11 +153,15 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
   };
   const detail::PatchFrame frame(for_each_point);
   result.pixels = frame.pixels;
-  result.status = frame.pixels > 6 ? SurfaceStatus::degenerate : SurfaceStatus::too_few;
   if (frame.pixels <= 6 || frame.is_line) {
     return result;
   }
-  const detail::QuadricFit fit(for_each_point, frame);
+  detail::ProductSums<double, 8> sums;
+  for_each_point([&](const Point3<double>& p, double, double) {
+    const auto [u, v, w] = frame.inside(p);
+    sums.add({1, u, v, u * u, u * v, v * v, w, w * w});
+  });
+  const detail::QuadricFit fit(sums);
 
   // at the height above the centroid, the curvature of F = w - c - g w^2 = 0 along a unit tangent t
   // is t^T (Hessian of -F) t / |grad F|
@@ -244,8 +194,7 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
         fit.equations.variance({0, 0, 0, 2 * d.x * d.x, 2 * d.x * d.y, 2 * d.y * d.y});
     return std::sqrt((std::max)(variance * by_c, 0.0));
   };
-  return {.status = SurfaceStatus::ok,
-          .pixels = frame.pixels,
+  return {.pixels = frame.pixels,
           .curvature_1_per_mm = k[0],
           .curvature_2_per_mm = k[1],
           .curvature_1_sd_per_mm = sd(along[0]),

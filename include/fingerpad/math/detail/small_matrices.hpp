@@ -162,6 +162,38 @@ class NormalEquations {
   std::array<S, N> scale_ = zeros<S, N>();
 };
 
+/// The sums of all products of N terms, from which least squares of a term in the first M take
+/// their normal equations.
+template <scalar S, std::size_t N>
+struct ProductSums {
+  SmallMatrix<S, N> sum = zero_matrix<S, N>();
+
+  void add(const std::array<S, N>& term) {
+    for (std::size_t a = 0; a < N; ++a) {
+      for (std::size_t b = a; b < N; ++b) {
+        sum[a][b] = sum[a][b] + term[a] * term[b];
+      }
+    }
+  }
+  S operator()(std::size_t a, std::size_t b) const { return a < b ? sum[a][b] : sum[b][a]; }
+  template <std::size_t M>
+  std::array<S, M> column(std::size_t b) const {
+    std::array<S, M> all = zeros<S, M>();
+    for (std::size_t a = 0; a < M; ++a) {
+      all[a] = (*this)(a, b);
+    }
+    return all;
+  }
+  template <std::size_t M>
+  SmallMatrix<S, M> corner() const {
+    SmallMatrix<S, M> all;
+    for (std::size_t b = 0; b < M; ++b) {
+      all[b] = column<M>(b);
+    }
+    return all;
+  }
+};
+
 }  // namespace detail
 }  // namespace v0
 }  // namespace fingerpad

@@ -19,13 +19,6 @@ namespace detail {
 /// State of a pixel while regions are found.
 enum class Mark : std::uint8_t { free, unknown, seed, contact };
 
-inline const std::uint8_t* bytes_of(const Mark* marks) {
-  return reinterpret_cast<const std::uint8_t*>(marks);
-}
-inline std::uint8_t* bytes_of(Mark* marks) {
-  return reinterpret_cast<std::uint8_t*>(marks);
-}
-
 /// The first mark equal to `which` in [first, last), or last.
 inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
   const auto count = static_cast<std::size_t>(last - first);
@@ -43,21 +36,23 @@ void mark_below(const S& threshold, const S* curvature, Index count, Mark* marks
         k == k ? every_lane<V>(S(0)) : every_lane<V>(S(static_cast<int>(Mark::unknown)));
     const V mark =
         k < every_lane<V>(threshold) ? every_lane<V>(S(static_cast<int>(Mark::seed))) : known;
-    store_cells<S>(bytes_of(marks + j), mark);
+    store_cells<S>(reinterpret_cast<std::uint8_t*>(marks + j), mark);
   });
 }
 
-/// Layout of an image with a border of one pixel. The border always stays `unknown`, so that no
-/// bounds are tested.
+/// Layout of an image with a border of at least one pixel. The border always stays `unknown`, so
+/// that no bounds are tested.
 struct BorderedImage {
   Index rows;
   Index cols;
+  Index border = 1;
 
-  friend constexpr bool operator==(const BorderedImage&, const BorderedImage&) = default;
-  constexpr Index stride() const { return cols + 2; }
-  constexpr Index size() const { return (rows + 2) * stride(); }
+  constexpr Index stride() const { return cols + 2 * border; }
+  constexpr Index size() const { return (rows + 2 * border) * stride(); }
   /// Offset of the pixel (row, col).
-  constexpr Index at(Index row, Index col) const { return (row + 1) * stride() + col + 1; }
+  constexpr Index at(Index row, Index col) const {
+    return (row + border) * stride() + col + border;
+  }
   /// View of the image without its border, in memory of size() cells.
   template <class T>
   constexpr StridedView<T> view(T* cells) const {
