@@ -173,7 +173,6 @@ using Recordings = std::vector<std::vector<Hand>>;
 constexpr std::size_t slip_begins = 60;
 
 /// Three patches on each finger begin to slip; place, speed and rate vary.
-template <class Waves>
 const Recordings& slips() {
   static const Recordings all = [] {
     std::mt19937 random(17);
@@ -195,7 +194,7 @@ const Recordings& slips() {
         patch.phase = any(0, 6.28);
         scene.patches[static_cast<std::size_t>(p % 2)].push_back(patch);
       }
-      const TaxelFeatures<Waves> features(
+      const TaxelFeatures<> features(
           scene.rows, scene.cols,
           TaxelOptions<>{
               .sample_period_s = 1 / rate_hz, .longest_gap_s = 8 / rate_hz, .noise = scene.noise});
@@ -226,18 +225,17 @@ struct Watching {
   }
 };
 
-template <class Rule, class Search, class Waves = ZeroCrossings>
+template <class Rule, class Search>
 void add_detection(const std::string& name) {
   using Estimator = typename Search::template Estimator<Rule, double>;
   const bench::Memory memory;
   const auto d = std::make_shared<Watching<Estimator>>();
   const long bytes = memory.bytes();
   bench::add(
-      "detection/" + name, 1, bytes,
-      [d] { benchmark::DoNotOptimize(d->next(slips<Waves>().front())); },
+      "detection/" + name, 1, bytes, [d] { benchmark::DoNotOptimize(d->next(slips().front())); },
       [](auto& counters) {
         std::vector<double> delays;
-        for (const std::vector<Hand>& hands : slips<Waves>()) {
+        for (const std::vector<Hand>& hands : slips()) {
           Watching<Estimator> watching;
           while (watching.k < hands.size() && !watching.next(hands).is_fresh) {
           }
@@ -382,7 +380,6 @@ int main(int argc, char** argv) {
   add_searches<GraspOptimise>("GraspOptimise");
   add_detection<GraspLift, Scan>("published: GraspLift, StackScan");
   add_detection<GraspLift, Newest>("GraspLift, the default");
-  add_detection<GraspLift, Newest, SpectralPeak>("GraspLift, SpectralPeak");
   add_detection<GraspOptimise, Scan>("published: GraspOptimise, StackScan");
   add_detection<GraspOptimise, Newest>("GraspOptimise");
   add_loosening<GraspOptimise, double>("published: LoosenUntilPreslip, GraspOptimise, double");

@@ -6,7 +6,6 @@
 // Errors, over twelve recordings with 0.08 to 0.32 waves a sample: of the vibrating taxel's rms,
 // against two passes in long double; of its waves, which are integers, against the true waves of a
 // window; of the centroid, against sums in double. "two passes": the direct method in double.
-// way in double.
 #include "fingerpad/foam/taxel_features.hpp"
 
 #include <algorithm>
@@ -116,9 +115,9 @@ struct FeatureErrors {
   }
 };
 
-template <class Cell, class S, class Waves>
+template <class Cell, class S>
 struct Hand {
-  using Features = TaxelFeatures<Waves, S>;
+  using Features = TaxelFeatures<S>;
   using Rule = Preslip<GraspLift, 3, S>;
 
   explicit Hand(Index window)
@@ -156,10 +155,10 @@ struct Hand {
 };
 
 /// Adds the errors of a round of the recording, after one that fills the window.
-template <class Cell, class S, class Waves>
+template <class Cell, class S>
 void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   const auto readings = recording<Cell>(turn_rad);
-  Hand<Cell, S, Waves> hand(window);
+  Hand<Cell, S> hand(window);
   const double pitch_mm = static_cast<double>(hand.features.options().pitch_mm);
   for (Index k = 0; k < 2 * period; ++k) {
     hand.step(readings, false);
@@ -181,21 +180,21 @@ void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   }
 }
 
-template <class Cell, class S, class Waves>
+template <class Cell, class S>
 FeatureErrors errors_of(bool vibrates, Index window) {
   FeatureErrors errors;
   for (int k = 0; k < (vibrates ? 12 : 1); ++k) {
-    add_errors<Cell, S, Waves>(vibrates ? 0.5 + 0.14 * k : 0, window, errors);
+    add_errors<Cell, S>(vibrates ? 0.5 + 0.14 * k : 0, window, errors);
   }
   return errors;
 }
 
-template <class Cell, class S, class Waves = ZeroCrossings>
+template <class Cell, class S>
 void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
   const auto readings =
       std::make_shared<const std::vector<Cell>>(recording<Cell>(vibrates ? timed_turn_rad : 0));
   const bench::Memory memory;
-  const auto hand = std::make_shared<Hand<Cell, S, Waves>>(window);
+  const auto hand = std::make_shared<Hand<Cell, S>>(window);
   bench::add(
       name, static_cast<std::size_t>(3 * rows * cols), memory.bytes(),
       [=] {
@@ -203,7 +202,7 @@ void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
         benchmark::DoNotOptimize(hand->samples);
       },
       [=, errors = FeatureErrors()](auto& counters) mutable {
-        errors = errors.centroid_mm.empty() ? errors_of<Cell, S, Waves>(vibrates, window) : errors;
+        errors = errors.centroid_mm.empty() ? errors_of<Cell, S>(vibrates, window) : errors;
         errors.note(counters);
       });
 }
@@ -255,21 +254,6 @@ void add_opencv(const std::string& group, Index window) {
       [](auto&) {});
 }
 
-/// Spectra of the windows of the three vibrating taxels.
-void add_opencv_spectrum(const std::string& group, Index window) {
-  const auto windows = std::make_shared<cv::Mat>(3, static_cast<int>(window), CV_64F);
-  cv::randn(*windows, 0, 60);
-  const auto spectra = std::make_shared<cv::Mat>();
-  bench::add(
-      group + "cv::dft of three windows", static_cast<std::size_t>(3 * rows * cols),
-      3 * window * static_cast<long>(sizeof(double)),
-      [=] {
-        cv::dft(*windows, *spectra, cv::DFT_ROWS);
-        benchmark::DoNotOptimize(spectra->data);
-      },
-      [](auto&) {});
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -283,14 +267,11 @@ int main(int argc, char** argv) {
   bench::add_streaming("quiet");
   for (const Index window : {16, 64}) {
     const std::string group = "vibrating, window " + std::to_string(window) + "/";
-    add<Counts, double>(group + "ZeroCrossings, double, the default", true, window, false);
-    add<Counts, float>(group + "ZeroCrossings, float", true, window, false);
-    add<Counts, double, SpectralPeak>(group + "SpectralPeak, double", true, window, false);
-    add<Counts, float, SpectralPeak>(group + "SpectralPeak, float", true, window, false);
-    add<Counts, double>(group + "ZeroCrossings, hand", true, window, true);
+    add<Counts, double>(group + "double, the default", true, window, false);
+    add<Counts, float>(group + "float", true, window, false);
+    add<Counts, double>(group + "hand", true, window, true);
     add_two_passes(group, window);
     add_opencv(group, window);
-    add_opencv_spectrum(group, window);
   }
   return bench::run(argc, argv);
 }

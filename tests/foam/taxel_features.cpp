@@ -183,16 +183,11 @@ TEST_CASE("taxel features: nothing vibrates before the window is full", "[taxel_
   CHECK(after(features, state, 1, Sine{3}, 16).status == TaxelStatus::filling);
 }
 
-TEMPLATE_TEST_CASE("taxel features: as many waves as a sine has in the window",
-                   "[taxel_features]",
-                   ZeroCrossings,
-                   SpectralPeak) {
-  const TaxelFeatures<TestType> features(3, 5, options());
+TEST_CASE("taxel features: as many waves as a sine has in the window", "[taxel_features]") {
+  const TaxelFeatures features(3, 5, options());
   // a crossing may be missed where waves are shorter than three samples, and one wave minus its
   // line crosses it three times
-  const int least = std::is_same_v<TestType, SpectralPeak> ? 1 : 2;
-  const int most = std::is_same_v<TestType, SpectralPeak> ? 7 : 5;
-  for (int waves = least; waves <= most; ++waves) {
+  for (int waves = 2; waves <= 5; ++waves) {
     CAPTURE(waves);
     const auto sample = after(features, 40, Sine{static_cast<double>(waves)});
     CHECK(sample.waves == waves);
@@ -237,23 +232,16 @@ TEST_CASE("taxel features: noise that crosses the mean is not counted within the
   };
   auto o = options();
   o.window = 64;
-  const auto waves_with = [&](double hysteresis) {
-    return after(TaxelFeatures<>(1, 1, o, ZeroCrossings{hysteresis}), 64, rippled).waves;
-  };
-  CHECK(waves_with(0.5) == 4);
-  CHECK(waves_with(0.0) > 4);
+  CHECK(after(TaxelFeatures<>(1, 1, o), 64, rippled).waves == 4);
 }
 
-TEMPLATE_TEST_CASE("taxel features: waves of the window, frequency by the clock",
-                   "[taxel_features]",
-                   ZeroCrossings,
-                   SpectralPeak) {
+TEST_CASE("taxel features: waves of the window, frequency by the clock", "[taxel_features]") {
   // 12.5 Hz sampled at 0.8 to 1.25 times the nominal rate: 10 to 6.4 waves in 64 samples
   for (const double rate : {0.8, 1.0, 1.25}) {
     CAPTURE(rate);
     auto o = options();
     o.window = 64;
-    const TaxelFeatures<TestType> features(1, 1, o);
+    const TaxelFeatures features(1, 1, o);
     auto state = features.start();
     FingerSample<double> sample;
     for (int k = 0; k < 200; ++k) {
@@ -293,24 +281,6 @@ TEST_CASE("taxel features: a gap counts as at most two periods and is told", "[t
   auto state = features.start();
   CHECK(features(array(3, 5, [](Index, Index) { return 10; }), 0, state).gaps == 0);
   CHECK(features(array(3, 5, [](Index, Index) { return 11; }), 0.02, state).gaps == 0);
-}
-
-TEST_CASE("taxel features: the spectrum takes uneven times as they are", "[taxel_features]") {
-  // jitter of up to a third of the period, as a fixed sequence
-  auto o = options();
-  o.window = 32;
-  const TaxelFeatures<SpectralPeak> features(1, 1, o);
-  for (int waves = 2; waves <= 12; ++waves) {
-    CAPTURE(waves);
-    auto state = features.start();
-    FingerSample<double> sample;
-    for (int k = 0; k < 32; ++k) {
-      const double t = (k + 0.33 * std::sin(7.0 * k * k)) * period_s;
-      const double reading = 10 + std::sin(tau * waves * t / 0.32 + 0.4);
-      sample = features(array(1, 1, [&](Index, Index) { return reading; }), t, state);
-    }
-    CHECK(sample.waves == waves);
-  }
 }
 
 TEST_CASE("taxel features: times that do not grow are refused, jumps begin a new window",
@@ -560,36 +530,29 @@ TEST_CASE("taxel features: any grid and any cell", "[taxel_features]") {
   same([](const auto& f) { return LazyView(3, 5, f); });
 }
 
-TEMPLATE_TEST_CASE("taxel features: any scalar",
-                   "[taxel_features]",
-                   float,
-                   long double,
-                   test::Digits50) {
+TEMPLATE_TEST_CASE(
+    "taxel features: any scalar", "[taxel_features]", float, long double, test::Digits50) {
   using S = TestType;
   TaxelOptions<S> o;
   o.pitch_mm = S(2);
   o.sample_period_s = S(1) / S(64);
   o.noise = S(1) / S(8);
-  const TaxelFeatures<ZeroCrossings, S> counted(2, 2, o);
-  const TaxelFeatures<SpectralPeak, S> measured(2, 2, o);
-  auto state = counted.start();
-  auto spectral = measured.start();
-  FingerSample<S> by_count, by_spectrum;
+  const TaxelFeatures<S> features(2, 2, o);
+  auto state = features.start();
+  FingerSample<S> sample;
   for (int k = 0; k < 20; ++k) {
     Image<double> taxels(2, 2, 8.0);
     taxels(1, 0) = k % 4 < 2 ? 9 : 7;
-    by_count = counted(taxels, k / 64.0, state);
-    by_spectrum = measured(taxels, k / 64.0, spectral);
+    sample = features(taxels, k / 64.0, state);
   }
-  CHECK(by_count.location == 2);
-  CHECK(by_count.waves == 4);
-  CHECK(by_spectrum.waves == 4);
-  CHECK(static_cast<double>(value(by_count.center_x_mm)) == Approx(2 * 16.0 / 31));
+  CHECK(sample.location == 2);
+  CHECK(sample.waves == 4);
+  CHECK(static_cast<double>(value(sample.center_x_mm)) == Approx(2 * 16.0 / 31));
 }
 
 TEST_CASE("taxel features: derivative of the centroid", "[taxel_features]") {
   using S = test::Dual<double>;
-  const TaxelFeatures<ZeroCrossings, S> features(1, 2);
+  const TaxelFeatures<S> features(1, 2);
   auto state = features.start();
   Image<S> taxels(1, 2, S(3.0));
   taxels(0, 1) = S(1.0, 1.0);
@@ -631,8 +594,6 @@ TEST_CASE("taxel features: bad parameters are refused by name", "[taxel_features
         "TaxelFeatures: cols = 4097, must be in [1, 4096]");
   CHECK(test::refusal([] { TaxelFeatures<>(Image<double>(0, 0)); }) ==
         "TaxelFeatures: rows = 0, must be in [1, 4096]");
-  CHECK(test::refusal([] { TaxelFeatures<>(5, 5, {}, ZeroCrossings{1.0}); }) ==
-        "ZeroCrossings: hysteresis = 1, must be in [0, 1)");
 }
 
 TEST_CASE("taxel features: every status has a name", "[taxel_features]") {

@@ -78,7 +78,7 @@ inline Row small_vibration() {
                options.sample_period_s = S(1);
                options.longest_gap_s = S(10);
                options.noise = S(0);
-               const fingerpad::TaxelFeatures<fingerpad::ZeroCrossings, S> features(1, 1, options);
+               const fingerpad::TaxelFeatures<S> features(1, 1, options);
                auto state = features.start();
                test::Random random(5);
                std::vector<S> readings;

@@ -44,7 +44,7 @@ struct [[nodiscard]] TaxelNoise {
 /// Collects samples at rest.
 template <scalar S = double>
 class TaxelNoiseCalibration {
-  using Features = TaxelFeatures<ZeroCrossings, S>;
+  using Features = TaxelFeatures<S>;
 
  public:
   /// Refuses bad parameters (parameter_error). Options that depend on the noise need not be set.

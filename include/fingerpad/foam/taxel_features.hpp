@@ -10,7 +10,10 @@
 //   location   the taxel whose readings deviate most from a straight line in the window, by more
 //              than its noise: a grip that is loosened evenly does not vibrate. Among equals, the
 //              first in row-major order
-//   waves      crossings of that line, or the strongest line of the spectrum
+//   waves      crossings of that line, two per wave. They are counted per window of samples, so
+//              that a gap of the clock does not reduce their number. A step, as of a taxel that
+//              lets go, counts as one wave that has begun. Waves shorter than three samples may be
+//              missed
 //
 // "Some tactile elements" may vibrate: all of them are listed, each with its waves.
 // Taxels that are dead, saturated, stuck, flickering or missing are left out. They can vibrate
@@ -24,26 +27,47 @@
 #include <span>
 #include <vector>
 
-#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/detail/taxel_window.hpp"
 #include "fingerpad/foam/finger_sample.hpp"
 #include "fingerpad/foam/taxel_options.hpp"
-#include "fingerpad/foam/waves.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// Features of one finger, sample by sample. Waves: ZeroCrossings or SpectralPeak. One object
-/// serves any number of fingers of its size, each with its own state. A sample takes O(rows cols)
-/// time plus that of Waves for each vibrating taxel; with a new clock O(rows cols window). It
-/// allocates nothing and throws nothing.
-template <class Waves = ZeroCrossings, scalar S = double>
-class TaxelFeatures {
-  static_assert(!scalar<Waves>, "the scalar comes last: TaxelFeatures<ZeroCrossings, double>");
+namespace detail {
 
+/// Time from the oldest sample to one period beyond the newest.
+inline double span_s(const double* time_s, Index length) {
+  const double length_s = time_s[length - 1] - time_s[0];
+  return length_s / static_cast<double>(length - 1) * static_cast<double>(length);
+}
+
+/// The waves in the residuals of a taxel. A crossing counts when the signal exceeds half of its rms
+/// on the other side, so that noise on a slow wave does not count.
+template <scalar S>
+Index count_waves(const S* residual, Index length, const S& rms) {
+  const auto beyond = value(rms) / 2;
+  int side = 0, crossings = 0;
+  for (Index u = 0; u < length; ++u) {
+    const auto r = value(residual[u]);
+    const int now = r > beyond ? 1 : r < -beyond ? -1 : side;
+    crossings += now != side && side != 0 ? 1 : 0;
+    side = now;
+  }
+  return (crossings + 1) / 2;
+}
+
+}  // namespace detail
+
+/// Features of one finger, sample by sample. One object serves any number of fingers of its size,
+/// each with its own state. A sample takes O(rows cols window) time. It allocates nothing and
+/// throws nothing.
+template <scalar S = double>
+class TaxelFeatures {
   using Real = scalar_real_t<S>;
 
  public:
@@ -80,8 +104,7 @@ class TaxelFeatures {
           time_s_(static_cast<std::size_t>(length), 0.0),
           is_gap_(time_s_.size(), 0),
           spread_(held_.size(), S(0)),
-          residual_(time_s_.size(), S(0)),
-          scratch_(length) {
+          residual_(time_s_.size(), S(0)) {
       vibrating_.reserve(held_.size());
     }
 
@@ -95,7 +118,6 @@ class TaxelFeatures {
     std::vector<S> spread_;             // variance of each taxel about its line
     std::vector<S> residual_;
     detail::ReservedVector<Vibrating> vibrating_;
-    typename Waves::template Scratch<S> scratch_;
     Index samples_ = 0;
     Index unfilled_for_ = 0;    // samples since the window was last full
     Index unchanged_for_ = 0;   // samples since any reading changed
@@ -106,11 +128,8 @@ class TaxelFeatures {
   };
 
   /// Refuses bad parameters (parameter_error).
-  TaxelFeatures(Index rows,
-                Index cols,
-                const TaxelOptions<S>& options = {},
-                const Waves& waves = {})
-      : rows_(rows), cols_(cols), options_(options), waves_(waves) {
+  TaxelFeatures(Index rows, Index cols, const TaxelOptions<S>& options = {})
+      : rows_(rows), cols_(cols), options_(options) {
     check();
     floor_.assign(static_cast<std::size_t>(rows * cols), floor_of(value(options.noise)));
   }
@@ -119,13 +138,8 @@ class TaxelFeatures {
   /// taxel.
   template <grid Noise>
     requires std::constructible_from<S, cell_t<Noise>>
-  explicit TaxelFeatures(const Noise& noise,
-                         const TaxelOptions<S>& options = {},
-                         const Waves& waves = {})
-      : rows_(fingerpad::rows(noise)),
-        cols_(fingerpad::cols(noise)),
-        options_(options),
-        waves_(waves) {
+  explicit TaxelFeatures(const Noise& noise, const TaxelOptions<S>& options = {})
+      : rows_(fingerpad::rows(noise)), cols_(fingerpad::cols(noise)), options_(options) {
     check();
     const auto of = as_view(noise);
     for (Index i = 0; i < rows_; ++i) {
@@ -183,7 +197,6 @@ class TaxelFeatures {
             "in [1, 4096]");
     expects_valid(options_);
     expects_grid_size("TaxelFeatures", rows_, cols_, 1, options_.window);
-    waves_.check();
   }
 
   Real floor_of(const Real& noise) const {
@@ -387,16 +400,14 @@ class TaxelFeatures {
     const S mean_square = state.window_.residuals(location, state.residual_.data());
     if (value(mean_square) > 0) {
       const S rms = S(sqrt(mean_square));
-      const detail::WaveWindow<S> window{state.residual_.data(), state.time_s_.data(),
-                                         options_.window, rms};
-      state.vibrating_.push_back({location, waves_(window, state.scratch_), rms});
+      const Index waves = detail::count_waves(state.residual_.data(), options_.window, rms);
+      state.vibrating_.push_back({location, waves, rms});
     }
   }
 
   Index rows_;
   Index cols_;
   TaxelOptions<S> options_;
-  Waves waves_;
   // variance above which each taxel vibrates; infinite: dead
   std::vector<Real> floor_;
 };

@@ -36,7 +36,6 @@ struct FoamHandMethods {
   /// Slip of all fingers at once, as in the paper's first experiment.
   static constexpr bool has_grasp_optimise = false;
   static constexpr std::size_t arrays = 1;  ///< number of arrays of each finger
-  using Waves = ZeroCrossings;
   using Scalar = double;
 };
 
@@ -76,7 +75,7 @@ struct [[nodiscard]] FoamHandResult {
 template <std::size_t Fingers = 2, class Methods = FoamHandMethods>
 class FoamHand {
   using S = typename Methods::Scalar;
-  using Features = TaxelFeatures<typename Methods::Waves, S>;
+  using Features = TaxelFeatures<S>;
   static constexpr std::size_t arrays_each = Methods::arrays;
   static constexpr std::size_t all_arrays = Fingers * arrays_each;
 
