@@ -92,7 +92,6 @@ void add_frame(const std::string& name) {
 void add_limit() {
   struct Running {
     FrictionLimit<double> limit;
-    FrictionLimit<double>::State state = limit.start();
     std::size_t k = 0;
   };
   const bench::Memory memory;
@@ -103,7 +102,7 @@ void add_limit() {
         d->k = (d->k + 1) % recording().frames.size();
         const auto load = contact_load(Point3<double>{1, 0.5, -5}, Point3<double>{3, 2, 1},
                                        recording().frames[d->k], recording().contact);
-        benchmark::DoNotOptimize(d->limit(load, 0.5, RatioUpdate::fresh, d->state));
+        benchmark::DoNotOptimize(d->limit(load, 0.5, RatioUpdate::fresh));
       },
       [](auto&) {});
 }
@@ -129,8 +128,7 @@ struct OnScenes {
     const Index across = scene.dots_across();
     const SpatialStickRatio<double> ratio(across, across);
     auto state = ratio.start();
-    const FrictionLimit<double> friction;
-    auto friction_state = friction.start();
+    FrictionLimit<double> friction;
     published::FrictionRatio<double> published;
     test::Image<DotState> states(across, across);
     for (Index k = 0; k < scene.size(); ++k) {
@@ -139,7 +137,7 @@ struct OnScenes {
       const auto load =
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
                        test::noisy(scene[k].moment_n_mm, 0.02, random), seen, scene[k].contact);
-      const auto slip = friction(load, r, friction_state);
+      const auto slip = friction(load, r);
       const bool slides = r.updated() && r.stick_ratio < 0.1;
       (void)published(load.tangential_n, load.normal_n, slides);
       if (k < 2 || test::dots_of_both(scene[k], scene[k]) < 6) {
@@ -191,8 +189,9 @@ void add_scenes() {
       });
   add_on_scenes(
       "and FrictionLimit, the default",
-      [friction = FrictionLimit<double>(), state = FrictionLimit<double>().start()](
-          const auto& r) mutable { return friction({.normal_n = 5, .tangential_n = 1}, r, state); },
+      [friction = FrictionLimit<double>()](const auto& r) mutable {
+        return friction({.normal_n = 5, .tangential_n = 1}, r);
+      },
       [](auto& counters) {
         bench::note_errors(counters, "stick ratio", "of 1", on_scenes().fused);
         bench::note_errors(counters, "limit", "share", on_scenes().limit);

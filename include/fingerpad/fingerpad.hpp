@@ -50,7 +50,6 @@
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/grip_law.hpp"
 #include "fingerpad/slip/recoil.hpp"
-#include "fingerpad/slip/slipping_dots.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 

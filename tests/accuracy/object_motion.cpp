@@ -10,7 +10,6 @@
 #include <string>
 
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/slipping_dots.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_scene.hpp"
@@ -55,14 +54,13 @@ PoseErrors errors_of(const std::string& name,
   const Index n = scene.dots_across();
   const double along = noise * 0.005, deep = noise * 0.025;
   const SpatialStickRatio<double> ratio(n, n, {.lateral_mm = along, .depth_mm = deep});
-  const FrictionLimit<double> limit;
   const ObjectMotion<> motion(test::DotsMm(n, n, {0, 0, 0}));
   PoseErrors e;
   double told = 0, frames = 0, held = 0, told_sticking = 0, sticking = 0;
   for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
     test::Random random(seed);
     auto stick_state = ratio.start();
-    auto limit_state = limit.start();
+    FrictionLimit<double> limit;
     auto state = motion.start();
     test::Image<DotState> states(n, n);
     test::Image<std::uint8_t> slips(n, n);
@@ -82,9 +80,9 @@ PoseErrors errors_of(const std::string& name,
         moment_n_mm = test::noisy(moment_n_mm, force_noise * 0.02, random);
       }
       const auto load = contact_load(force_n, moment_n_mm, dots, scene[k].contact);
-      const auto slip = limit(load, seen, limit_state);
-      if (knows_slip) {
-        slipping_dots(seen, slip, states, slips);
+      const auto slip = limit(load, seen);
+      for (std::size_t at = 0; knows_slip && at < states.cells.size(); ++at) {
+        slips.cells[at] = slip.holds(states.cells[at]) ? 0 : 1;
       }
       const auto r = motion(dots, scene[k].contact, slips, state);
       const bool touches = scene[k].contact_area_mm2 > 0;

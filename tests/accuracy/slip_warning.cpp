@@ -76,14 +76,13 @@ Warners warned_on(const std::string& name) {
   const Index across = scene.dots_across();
   const SpatialStickRatio<double> ratio(across, across);
   const StickRatio<> in_image(across, across);
-  const FrictionLimit<double> limit;
   Warners w;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
     auto state = ratio.start();
     auto image_state = in_image.start();
     test::Image<Point2<double>> flat(across, across);
-    auto limit_state = limit.start();
+    FrictionLimit<double> limit;
     published::FrictionRatio<double> friction;
     test::Image<DotState> states(across, across);
     w.image.reset(), w.dots.reset(), w.fused.reset(), w.friction_ratio.reset();
@@ -101,7 +100,7 @@ Warners warned_on(const std::string& name) {
       const auto load =
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
                        test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);
-      const auto slip = limit(load, r, limit_state);
+      const auto slip = limit(load, r);
       // as on its page, the stick ratio reports when the object slides
       const bool slides = r.updated() && r.stick_ratio < 0.1;
       const double margin = friction(load.tangential_n, load.normal_n, slides);

@@ -62,13 +62,12 @@ SceneErrors errors_of(const std::string& name,
   const double along = noise * lateral_mm, deep = noise * depth_mm;
   const SpatialStickRatio<double> ratio(scene.dots_across(), scene.dots_across(),
                                         {.lateral_mm = along, .depth_mm = deep});
-  const FrictionLimit<double> limit;
   SceneErrors e;
   double frames = 0, answered = 0;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
     auto state = ratio.start();
-    auto limit_state = limit.start();
+    FrictionLimit<double> limit;
     test::Image<DotState> states(scene.dots_across(), scene.dots_across());
     for (Index k = 0; k < scene.size(); ++k) {
       auto dots = scene[k].dots;
@@ -80,7 +79,7 @@ SceneErrors errors_of(const std::string& name,
       const auto load = contact_load(test::noisy(scene[k].force_n, noise * 0.015, random),
                                      test::noisy(scene[k].moment_n_mm, noise * 0.02, random), dots,
                                      scene[k].contact);
-      const auto fused = limit(load, r, limit_state);
+      const auto fused = limit(load, r);
       if (k < 2 || test::dots_of_both(scene[k], scene[k]) < 6) {
         continue;
       }

@@ -36,17 +36,14 @@ GripLaw<double> any_law(Input& in) {
 void try_grip(Input& in) {
   const GripLaw<double> law = any_law(in);
   const GripControl<double> control(law);
-  const FrictionLimit<double> limit({.slide_fraction = in.number(0.5, 1),
-                                     .learn_below = in.number(0.1, 0.5),
-                                     .max_rise = in.number(1, 2)});
+  FrictionLimit<double> limit({.slide_fraction = in.number(0.5, 1)});
   auto state = control.start(in.number(0, 20));
-  auto friction = limit.start();
   for (Index calls = in.whole(1, 60); calls > 0; --calls) {
     const ContactLoad<double> load{in.number(0, 10), in.number(0, 10), in.number(-20, 20),
                                    in.number(0, 5)};
     const auto update = static_cast<RatioUpdate>(in.whole(0, 3));
     const double ratio = in.number(0, 1), step_s = in.number(0, 0.2);
-    const auto slip = fuzz::frame([&] { return limit(load, ratio, update, friction); });
+    const auto slip = fuzz::frame([&] { return limit(load, ratio, update); });
     require(std::isnan(slip.stick_ratio) || (slip.stick_ratio >= 0 && slip.stick_ratio <= 1),
             "a ratio is in [0, 1], or NaN");
     auto less = state;

@@ -52,14 +52,13 @@ TEST_CASE("mistakes with the friction limit", "[mistakes]") {
        "no limit"},
   };
   for (const auto& mistake : mistakes) {
-    const FrictionLimit<> limit;
-    auto state = limit.start();
+    FrictionLimit<> limit;
     SlipResult<> r;
     for (int k = 0; k < 30; ++k) {
       const double pull_n = k < 20 ? 0.16 * (k + 1) : 1;
       Input in{{.normal_n = 4, .tangential_n = pull_n}, k < 19 ? 1 - 0.03 * k : k == 19 ? 0.1 : 1};
       mistake.make(in);
-      r = limit(in.load, in.stick_ratio, in.update, state);
+      r = limit(in.load, in.stick_ratio, in.update);
     }
     INFO(mistake.name);
     CHECK(name_of(r.status) == std::string(mistake.said));
@@ -143,9 +142,8 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
        "follows the load, slid"},
   };
   for (const auto& mistake : mistakes) {
-    const FrictionLimit<> limit;
+    FrictionLimit<> limit;
     const GripControl<> control;
-    auto learnt = limit.start();
     auto state = control.start(4);
     GripResult<> r{.force_n = 4};
     bool slid = false;
@@ -156,7 +154,7 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
       const double share = std::cbrt(std::fmax(0, 1 - friction / 0.8));
       Input in{{.normal_n = r.force_n, .tangential_n = pull_n}, share * share, k};
       mistake.make(in);
-      const auto slip = limit(in.load, in.stick_ratio, RatioUpdate::fresh, learnt);
+      const auto slip = limit(in.load, in.stick_ratio, RatioUpdate::fresh);
       r = control(slip, 0.02, state);
       CHECK((r.force_n >= control.law().min_force_n && r.force_n <= control.law().max_force_n));
     }

@@ -485,12 +485,10 @@ TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
     (void)slid(1e-300, 1.0, true);
     CHECK(std::isnan(slid(absurd, 1.0, false)));
     CHECK(std::isnan(slid(1.0, absurd, false)));
-    const FrictionLimit<> limit;
-    auto learnt = limit.start();
-    CHECK(limit({1, 1e-300}, 0.1, RatioUpdate::fresh, learnt).margin != 0);
-    CHECK(limit({1, absurd}, 0.9, RatioUpdate::fresh, learnt).status ==
-          FrictionLimitStatus::no_load);
-    CHECK_FALSE(std::isinf(limit({1, 0.5}, 0.9, RatioUpdate::fresh, learnt).margin));
+    FrictionLimit<> limit;
+    CHECK(limit({1, 1e-300}, 0.1, RatioUpdate::fresh).margin != 0);
+    CHECK(limit({1, absurd}, 0.9, RatioUpdate::fresh).status == FrictionLimitStatus::no_load);
+    CHECK_FALSE(std::isinf(limit({1, 0.5}, 0.9, RatioUpdate::fresh).margin));
   }
   WrenchResult<double> wrench;
   wrench.force_n = on_pad;
@@ -843,12 +841,11 @@ TEST_CASE("one convention of signs: a press", "[mistakes]") {
   CHECK(load.normal_n == Approx(-on_pad.z).epsilon(0.01));
   CHECK(NormalForce(published::force_of_area())(225.0).force_n > 0);
   // the other sign is reported where a normal force is passed
-  const FrictionLimit<> limit;
-  auto state = limit.start();
+  FrictionLimit<> limit;
   ContactLoad<> pulls = load;
   pulls.normal_n = on_pad.z;
-  CHECK(limit(load, 1, RatioUpdate::fresh, state).status != FrictionLimitStatus::no_load);
-  CHECK(limit(pulls, 1, RatioUpdate::fresh, state).status == FrictionLimitStatus::no_load);
+  CHECK(limit(load, 1, RatioUpdate::fresh).status != FrictionLimitStatus::no_load);
+  CHECK(limit(pulls, 1, RatioUpdate::fresh).status == FrictionLimitStatus::no_load);
   published::FrictionRatio<> ratio;
   CHECK(ratio(0.5, -on_pad.z, true) == 0);
   CHECK(std::isnan(ratio(0.5, on_pad.z, false)));

@@ -91,10 +91,9 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
   grip::SlippingLoad load(tip, first_n, force_n);
   const SpatialStickRatio<S> stick_ratio(
       tip.dots, tip.dots, {.lateral_mm = vary.lateral_mm, .depth_mm = vary.depth_mm});
-  const FrictionLimit<S> limit;
+  FrictionLimit<S> limit;
   const GripControl<S> control(law);
   auto stick_state = stick_ratio.start();
-  auto limit_state = limit.start();
   auto grip_state = control.start(S(force_n));
   Random random(static_cast<std::uint64_t>(1 + number + 100 * static_cast<int>(scene)));
   Image<Point3<double>> dots = free_dots(tip);
@@ -125,8 +124,7 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
     const auto stick = stick_ratio(dots, touch, states, stick_state, time_s);
     const double normal_n = real_n * (1 + vary.force_share * random.normal());
     const double tangential_n = load.held_n() * (1 + vary.force_share * random.normal());
-    const auto slip =
-        limit(ContactLoad<S>{S(normal_n), S(std::abs(tangential_n))}, stick, limit_state);
+    const auto slip = limit(ContactLoad<S>{S(normal_n), S(std::abs(tangential_n))}, stick);
     sum += real_n * now / load_n;
     frames += 1;
     const auto grip = vary.knows_force ? control(slip, S(frame_s), grip_state)

@@ -146,7 +146,7 @@ class WithFriction {
                   const test::SpatialFlags& contact,
                   const fingerpad::ContactLoad<double>& load) {
     auto seen = dots_(dots, contact, load);
-    const auto fused = limit_(load, seen, state_);
+    const auto fused = limit_(load, seen);
     seen.stick_ratio = static_cast<decltype(seen.stick_ratio)>(fused.stick_ratio);
     return seen;
   }
@@ -154,7 +154,6 @@ class WithFriction {
  private:
   Dots dots_;
   fingerpad::FrictionLimit<double> limit_;
-  fingerpad::FrictionLimit<double>::State state_ = limit_.start();
 };
 
 template <class Way>

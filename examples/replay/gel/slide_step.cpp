@@ -119,8 +119,7 @@ SlideStep::SlideStep(const std::vector<cv::Mat>& free_frames,
              slide_test_for(free_dots, options_)),
       slide_state_(slide_.start()),
       recoil_(free_dots, {.pitch_px = pitch_px(free_dots)}),
-      recoil_state_(recoil_.start()),
-      limit_state_(limit_.start()) {}
+      recoil_state_(recoil_.start()) {}
 
 GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask) {
   const cv::Mat frame = colours_of(image);
@@ -135,7 +134,7 @@ GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Ma
   const cv::Rect whole({0, 0}, contact_.mask().size() * options_.cell_px);
   cv::resize(contact_.mask(), mask(whole), whole.size(), 0, 0, cv::INTER_NEAREST);
   seen.recoil = recoil_(dots, recoil_state_);
-  seen.slip = limit_(fingerpad::ContactLoad<double>{}, seen.slide, limit_state_);
+  seen.slip = limit_(fingerpad::ContactLoad<double>{}, seen.slide);
   return seen;
 }
 

@@ -58,7 +58,6 @@ class SlideStep {
   fingerpad::Recoil<> recoil_;
   fingerpad::Recoil<>::State recoil_state_;
   fingerpad::FrictionLimit<> limit_;
-  fingerpad::FrictionLimit<>::State limit_state_;
   std::vector<double> ms_;
 };
 

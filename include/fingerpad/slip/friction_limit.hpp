@@ -13,16 +13,19 @@
 // replaced by an ellipse that meets it on both axes (Howe, Cutkosky, "Practical force-motion models
 // for sliding manipulation", 1996). The published form has forces only, "F / N ~ F0 / N0":
 // published/friction_ratio.hpp.
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
-#include "fingerpad/slip/detail/peak_loads.hpp"
-#include "fingerpad/slip/grip_law.hpp"
+#include "fingerpad/slip/stick_result.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -38,19 +41,17 @@ struct ContactLoad {
 };
 
 /// Computes the load from the six-axis force and moment, which the object exerts on the pad, about
-/// Q, and from the dots in contact. The forces are NaN with fewer than three dots. Allocates
-/// nothing, O(rows cols).
+/// Q, and from the dots in contact. The normal is the mean normal of the quadric through them. The
+/// forces are NaN with fewer than three dots. Allocates nothing, O(rows cols).
 template <scalar S, spatial_dot_grid Dots, contact_mask Contact>
 ContactLoad<S> contact_load(const Point3<S>& force_n,
                             const Point3<S>& moment_n_mm,
                             const Dots& dots_mm,
                             const Contact& contact) {
-  using namespace detail::stick;
   const auto dots = as_view(dots_mm);
   const auto touch = as_view(contact);
-  ContactLoad<S> load;
   if (!same_size(dots, touch) || !is_plausible(force_n)) {
-    return load;
+    return {};
   }
   const auto for_each = [&](const auto& visit) {
     for (Index i = 0; i < dots.rows(); ++i) {
@@ -62,59 +63,74 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
       }
     }
   };
-  const auto surface = quadric_through<S>(for_each);
+  const auto surface = detail::stick::quadric_through<S>(for_each);
   if (surface.dots < 3) {
-    return load;
+    return {};
   }
-  Point3<S> sum = {S(0), S(0), S(0)};
-  for_each([&](const Point3<S>& p) { sum += surface.normal(p); });
-  const Point3<S> normal = normalized(sum);
+  Point3<S> normals = {S(0), S(0), S(0)};
+  for_each([&](const Point3<S>& p) { normals += surface.normal(p); });
+  const Point3<S> normal = normalized(normals);
   S arms = S(0);
   for_each([&](const Point3<S>& p) {
     const Point3<S> arm = p - surface.middle;
-    arms = arms + norm(arm - dot(arm, normal) * normal);
+    arms += norm(arm - dot(arm, normal) * normal);
   });
-  load.normal_n = -dot(force_n, normal);
-  load.tangential_n = norm(force_n + load.normal_n * normal);
-  load.moment_n_mm = dot(moment_n_mm - cross(surface.middle, force_n), normal);
-  load.arm_mm = arms / S(static_cast<double>(surface.dots));
-  return load;
+  const S normal_n = -dot(force_n, normal);
+  return {normal_n, norm(force_n + normal_n * normal),
+          dot(moment_n_mm - cross(surface.middle, force_n), normal),
+          arms / S(static_cast<double>(surface.dots))};
 }
 
 /// L; NaN unless the normal force is > 0 and both forces are known.
 template <scalar S>
 S friction_of(const ContactLoad<S>& load) {
   using std::sqrt;
-  if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n)) {
+  if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n) || !(load.normal_n > S(0))) {
     return not_a_number<S>();
   }
-  const S along = load.tangential_n / load.normal_n;
   const bool turns =
-      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && value(load.arm_mm) > 0;
-  const S about = turns ? S(load.moment_n_mm / (load.arm_mm * load.normal_n)) : S(0);
+      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && load.arm_mm > S(0);
+  const S along = load.tangential_n / load.normal_n;
+  const S about = turns ? load.moment_n_mm / (load.arm_mm * load.normal_n) : S(0);
   const S sq = along * along + about * about;
-  return value(load.normal_n) > 0 ? (value(sq) > 0 ? S(sqrt(sq)) : sq) : not_a_number<S>();
+  return sq > S(0) ? sqrt(sq) : sq;  // a derivative at 0 as well
+}
+
+/// How current a stick ratio is.
+enum class RatioUpdate : std::uint8_t {
+  fresh,       ///< the ratio is that of this frame
+  unmoved,     ///< the dots moved too little for a new ratio: the last one still applies
+  missing,     ///< there is no usable ratio
+  no_contact,  ///< nothing touches: there is no object, or it has just been lost
+};
+
+/// The update that a status of the stick ratio means.
+template <class Status>
+  requires requires {
+    Status::updated;
+    Status::standing;
+    Status::no_reference;
+    Status::no_contact;
+  }
+constexpr RatioUpdate update_of(Status status) {
+  const bool unmoved = status == Status::standing || status == Status::no_reference;
+  return status == Status::updated      ? RatioUpdate::fresh
+         : unmoved                      ? RatioUpdate::unmoved
+         : status == Status::no_contact ? RatioUpdate::no_contact
+                                        : RatioUpdate::missing;
 }
 
 struct FrictionLimitOptions {
   /// Fraction of the limit above which the object counts as sliding, in (0, 1]. The default is 1
   /// less 2.4 times the noise of L. With both forces known to 1.5 %, L is known to 2.1 %.
   double slide_fraction = 0.95;
-  double learn_below = 0.2;  ///< stick ratio of the dots below which the limit is learnt, in (0, 1)
-  /// Largest factor by which the limit rises or falls in a frame, > 1. An object that exceeds the
-  /// limit by this factor while more than half of it sticks makes the limit unknown again.
-  double max_rise = 1.15;
   double min_normal_n = 0.05;  ///< N, > 0: L is unknown with a smaller normal force
 };
-inline void expects_valid(const FrictionLimitOptions& o) {
-  const auto check = [](bool good, const char* name, double given, const char* range) {
-    expects(good && is_finite(given), "FrictionLimitOptions", name, given, range);
-  };
-  check(o.slide_fraction > 0 && o.slide_fraction <= 1, "slide_fraction", o.slide_fraction,
-        "in (0, 1]");
-  check(o.learn_below > 0 && o.learn_below < 1, "learn_below", o.learn_below, "in (0, 1)");
-  check(o.max_rise > 1, "max_rise", o.max_rise, "finite and > 1");
-  check(o.min_normal_n > 0, "min_normal_n", o.min_normal_n, "finite and > 0");
+/// Says which option has no meaning; "" if all have one.
+inline std::string check(const FrictionLimitOptions& o) {
+  return check("FrictionLimitOptions",
+               {{"slide_fraction", o.slide_fraction, {.min = 0, .max = 1, .above_min = true}},
+                {"min_normal_n", o.min_normal_n, positive}});
 }
 
 enum class FrictionLimitStatus : std::uint8_t {
@@ -123,20 +139,10 @@ enum class FrictionLimitStatus : std::uint8_t {
   no_limit,  ///< no slide so far: the answer is that of the dots alone
   no_load,   ///< no normal force, or a force is not finite: the answer is that of the dots alone
 };
-
 /// "held", "sliding", ...
 constexpr const char* name_of(FrictionLimitStatus status) {
-  switch (status) {
-    case FrictionLimitStatus::held:
-      return "held";
-    case FrictionLimitStatus::sliding:
-      return "sliding";
-    case FrictionLimitStatus::no_limit:
-      return "no limit";
-    case FrictionLimitStatus::no_load:
-      return "no load";
-  }
-  return "unknown";
+  constexpr std::array<const char*, 4> names = {"held", "sliding", "no limit", "no load"};
+  return names[static_cast<std::size_t>(status)];
 }
 
 /// What an answer is based on.
@@ -146,13 +152,6 @@ enum class SlipEvidence : std::uint8_t {
   imprint,   ///< on a gel: slide of the imprint, lost area, or recoil
   friction,  ///< the friction limit alone
   both,      ///< friction, and dots or imprint
-};
-
-/// Result with evidence for slip on a gel: SlideResult, or RecoilResult if only the dots are known.
-template <class T> concept imprint_result = requires(const T& seen) {
-  seen.ok();
-  seen.held();
-  seen.touches();
 };
 
 /// The stick ratio by dots, or by the imprint on a gel, combined with friction.
@@ -168,192 +167,179 @@ struct [[nodiscard]] SlipResult {
   /// The dots move back toward their free positions: the load falls, or the object slides because
   /// friction has fallen.
   bool falls_back = false;
+  /// The dots' ratio is of this frame, and not above a fifth by two of its standard deviations.
+  bool in_doubt = false;
   S normal_n = not_a_number<S>();  ///< F_n; NaN where L is unknown
   S friction = not_a_number<S>();  ///< L
   S limit = not_a_number<S>();     ///< L at the last slide; NaN: none so far
   S margin = not_a_number<S>();    ///< 1 - L / limit; NaN if unknown
 
   bool ok() const { return is_finite(stick_ratio); }
+
+  /// Whether a dot of this state moves with the object, so that it counts for the object's motion.
+  /// A pose given during a slide is wrong from then on, but a frame without a pose costs only that
+  /// frame, so doubt counts as slip. If the load shows that the object carries dots that fall back,
+  /// and more than half of them stick, all count: the states are those from before the reversal,
+  /// and the few dots that slip since have little weight in the fit of the motion.
+  bool holds(DotState state) const {
+    const bool carried = falls_back && update == RatioUpdate::fresh && S(2) * stick_ratio > S(1);
+    return status != FrictionLimitStatus::sliding && !in_doubt &&
+           (carried || state != DotState::slip);
+  }
 };
 
-/// Combines the dots, or the imprint on a gel, with friction. Const, O(1), allocates nothing,
-/// throws nothing.
+/// Combines the dots, or the imprint on a gel, with friction, frame by frame. A value: copy it to
+/// return to this frame later; one object a thread. A frame allocates nothing, throws nothing, and
+/// examines at most the last 64 loads.
 template <scalar S = double>
 class FrictionLimit {
  public:
-  /// A value: copy it to return to this frame later.
-  class State {
-   public:
-    const S& limit() const { return limit_; }
-    void reset() { *this = State(); }
-
-   private:
-    friend class FrictionLimit;
-    State() = default;
-    S limit_ = not_a_number<S>();
-    detail::stick::PeakLoads<S> loads_;
-  };
-
   /// Refuses bad parameters (parameter_error).
   explicit FrictionLimit(const FrictionLimitOptions& options = {}) : options_(options) {
-    expects_valid(options);
+    require(options);
+    reset();
   }
 
-  State start() const { return State(); }
+  /// L at the last slide; NaN: none so far.
+  const S& limit() const { return limit_; }
+  /// Call it when another object is grasped: the limit is a property of the object and outlives a
+  /// contact.
+  void reset() {
+    limit_ = not_a_number<S>();
+    loads_.fill(limit_);
+  }
 
-  /// `stick_ratio` (NaN: none) and `update` are those of the dots. `reference_age`, the number of
-  /// frames since their reference, is needed to detect that the limit has fallen (0: unknown; the
-  /// limit is then not lowered far). The limit is a property of the object and outlives a contact,
-  /// so reset the state when another object is grasped.
+  /// `ratio` (NaN: none) and `update` are those of the dots, or of `source`.
   SlipResult<S> operator()(const ContactLoad<S>& load,
-                           const S& stick_ratio,
+                           const S& ratio,
                            RatioUpdate update,
-                           State& state,
-                           Index reference_age = 0) const {
-    return fuse(load, stick_ratio, update, SlipEvidence::dots, reference_age, state);
-  }
-
-  /// The same for the result of a stick ratio, whose reference_age tells GripControl whether it is
-  /// new. If dots in space fall back, their ratio is used only if the load shows that the object
-  /// carries them.
-  template <class Stick>
-    requires requires(const Stick& seen) {
-      seen.stick_ratio;
-      seen.reference_age;
-      update_of(seen.status);
-    }
-  SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen, State& state) const {
-    if constexpr (requires { seen.back.reference_age; }) {
-      if (is_finite(seen.back.stick_ratio)) {
-        return of_falling_back(load, seen, state);
-      }
-    }
-    return (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, seen.reference_age);
-  }
-
-  /// The same for a gel, where `imprint`, the result of ContactSlide or Recoil, replaces the dots.
-  /// The limit is learnt while held() is below learn_below, and is used where the imprint is not
-  /// found.
-  template <imprint_result Imprint>
-  SlipResult<S> operator()(const ContactLoad<S>& load, const Imprint& imprint, State& state) const {
-    const RatioUpdate update = imprint.ok()        ? RatioUpdate::fresh
-                               : imprint.touches() ? RatioUpdate::missing
-                                                   : RatioUpdate::no_contact;
-    const S held = imprint.ok() ? S(imprint.held()) : not_a_number<S>();
-    return fuse(load, held, update, SlipEvidence::imprint, 0, state);
-  }
-
- private:
-  /// `ratio` is that of `source`.
-  SlipResult<S> fuse(const ContactLoad<S>& load,
-                     const S& ratio,
-                     RatioUpdate update,
-                     SlipEvidence source,
-                     Index reference_age,
-                     State& state) const {
+                           SlipEvidence source = SlipEvidence::dots) {
     SlipResult<S> result;
-    const bool known = value(ratio) >= 0 && value(ratio) <= 1;
+    const bool known = ratio >= S(0) && ratio <= S(1);
+    const bool fresh = known && update == RatioUpdate::fresh;
+    const bool slides = fresh && ratio < S(least_stick);
     result.stick_ratio = known ? ratio : not_a_number<S>();
-    result.dots_ratio = update == RatioUpdate::fresh ? result.stick_ratio : not_a_number<S>();
+    result.dots_ratio = fresh ? ratio : not_a_number<S>();
     result.update = update;
     result.evidence = known ? source : SlipEvidence::none;
-    result.friction = known_friction(load);
-    result.limit = state.limit_;
-    result.reference_age = reference_age;
-    state.loads_.add(result.friction);
+    result.limit = limit_;
+    result.friction = loads_[next_] = friction_with(load);
+    next_ = (next_ + 1) % loads_.size();
     if (!is_finite(result.friction)) {
       return result;
     }
     result.normal_n = load.normal_n;
-    const bool slides = known && update == RatioUpdate::fresh && ratio < S(options_.learn_below);
     if (slides) {
-      learn(result, state);
-    } else if (known && update == RatioUpdate::fresh && 2 * value(ratio) > 1 &&
-               result.friction > S(options_.max_rise) * state.limit_) {
-      // The object holds at more than the limit, so the limit was wrong.
-      state.limit_ = not_a_number<S>();
+      learn(result.friction);
+    } else if (fresh && S(2) * ratio > S(1) && result.friction > S(max_rise) * limit_) {
+      limit_ = not_a_number<S>();
     }
-    judge(slides, state, result);
+    result.limit = limit_;
+    result.margin = S(1) - result.friction / limit_;
+    result.status = is_finite(limit_) ? FrictionLimitStatus::held : FrictionLimitStatus::no_limit;
+    if (result.friction > S(options_.slide_fraction) * limit_) {
+      result.status = FrictionLimitStatus::sliding;
+      result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
+      result.stick_ratio = S(0);
+      result.update = RatioUpdate::fresh;
+    }
     return result;
   }
 
-  /// An object that sticks carries a membrane back only while its load falls, here by more than 2.5
-  /// times the noise of the difference of two L, 3.0 % for forces known to 1.5 %. Under an object
-  /// that slides, the membrane springs back while the load stays. If no limit is known yet, such a
-  /// slide is learnt, provided that less than half stuck in the last ratio of the dots.
+  /// The same for the result of a stick ratio. Dots that fall back have two answers. An object that
+  /// sticks carries them only while its load falls, here by more than 2.5 times the noise of the
+  /// difference of two L, 3.0 % for forces known to 1.5 %: then the ratio is that of this frame.
+  /// Under an object that slides, the membrane springs back while the load stays: the last ratio
+  /// applies, and a first slide is learnt if less than half stuck in it.
   template <class Stick>
-  SlipResult<S> of_falling_back(const ContactLoad<S>& load, const Stick& seen, State& state) const {
-    const Index age = seen.back.reference_age;
-    const S friction = known_friction(load), highest = state.loads_.since(age - 1);
-    const bool carried = friction < S(1 - 1.5 * (1 - options_.slide_fraction)) * highest;
-    const bool stays = friction > S(options_.slide_fraction) * highest;
-    const bool slides = stays && !is_finite(state.limit_) && 2 * value(seen.stick_ratio) < 1;
-    SlipResult<S> result =
-        carried  ? (*this)(load, S(seen.back.stick_ratio), RatioUpdate::fresh, state, age)
-        : slides ? (*this)(load, S(0), RatioUpdate::fresh, state, age)
-                 : (*this)(load, S(seen.stick_ratio), update_of(seen.status), state, age);
-    result.falls_back = true;
+    requires requires(const Stick& seen) {
+      seen.stick_ratio;
+      seen.ratio_sd;
+      update_of(seen.status);
+    }
+  SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen) {
+    RatioUpdate update = update_of(seen.status);
+    S ratio = S(seen.stick_ratio);
+    Index age = seen.reference_age;
+    bool falls_back = false;
+    if constexpr (requires { seen.back.reference_age; }) {
+      falls_back = is_finite(seen.back.stick_ratio);
+      if (falls_back) {
+        age = seen.back.reference_age;
+        const S before = highest_of_last(age), now = friction_with(load);
+        const bool carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
+        const bool slides =
+            now > S(options_.slide_fraction) * before && !is_finite(limit_) && S(2) * ratio < S(1);
+        ratio = carried ? S(seen.back.stick_ratio) : slides ? S(0) : ratio;
+        update = carried || slides ? RatioUpdate::fresh : update;
+      }
+    }
+    SlipResult<S> result = (*this)(load, ratio, update);
+    result.reference_age = age;
+    result.falls_back = falls_back;
+    result.in_doubt = !falls_back && update == RatioUpdate::fresh &&
+                      !(ratio - S(2) * S(seen.ratio_sd) > S(least_stick));
     return result;
   }
+
+  /// The same for a gel, where `imprint`, the result of ContactSlide or Recoil, replaces the dots.
+  template <class Imprint>
+    requires requires(const Imprint& imprint) {
+      imprint.ok();
+      imprint.held();
+      imprint.touches();
+    }
+  SlipResult<S> operator()(const ContactLoad<S>& load, const Imprint& imprint) {
+    return (*this)(load, imprint.ok() ? S(imprint.held()) : not_a_number<S>(),
+                   imprint.ok()        ? RatioUpdate::fresh
+                   : imprint.touches() ? RatioUpdate::missing
+                                       : RatioUpdate::no_contact,
+                   SlipEvidence::imprint);
+  }
+
+ private:
+  /// An object slides if less of it sticks.
+  static constexpr double least_stick = 0.2;
+  /// Largest factor by which the limit rises in a frame. An object that exceeds the limit by this
+  /// factor while more than half of it sticks makes the limit unknown again.
+  static constexpr double max_rise = 1.15;
 
   /// L; NaN if the normal force is below min_normal_n.
-  S known_friction(const ContactLoad<S>& load) const {
+  S friction_with(const ContactLoad<S>& load) const {
     return !(load.normal_n < S(options_.min_normal_n)) ? friction_of(load) : not_a_number<S>();
   }
 
-  void learn(const SlipResult<S>& seen, State& state) const {
-    if (!is_finite(state.limit_)) {
-      // a smaller L is no friction
-      state.limit_ = seen.friction > S(1e-6) ? seen.friction : state.limit_;
-      return;
-    }
-    if (seen.friction < S(options_.slide_fraction) * state.limit_) {
-      follow_fall(seen, state);
-      return;
-    }
-    const S top = S(options_.max_rise) * state.limit_;
-    const S toward = value(seen.friction) < value(top) ? seen.friction : top;
-    // rises fast and falls slowly: noise makes the mean slightly too high, never too low
-    const S share = value(toward) > value(state.limit_) ? S(1) / S(2) : S(1) / S(10);
-    state.limit_ = state.limit_ + share * S(toward - state.limit_);
-  }
-
-  /// Lowers a limit that has fallen. Whatever slid since the reference did so under no larger load
-  /// than the largest since then. If a fraction s sticks, that load is (1 - s^(3/2)) of the limit
-  /// (Cattaneo, Mindlin). A limit above this by more than the noise of L has fallen.
-  void follow_fall(const SlipResult<S>& seen, State& state) const {
-    using std::sqrt;
-    if (seen.reference_age <= 0) {
-      return;
-    }
-    const S stick = seen.stick_ratio;
-    const S slips = S(1) - (value(stick) > 0 ? S(stick * S(sqrt(stick))) : S(0));
-    const S highest =
-        state.loads_.since(seen.reference_age) / S(S(options_.slide_fraction) * slips);
-    if (highest < state.limit_) {
-      const S least = state.limit_ / S(options_.max_rise);
-      state.limit_ = highest < least ? least : highest;
+  /// Learns from a slide. Rises fast and falls slowly: noise makes the mean slightly too high,
+  /// never too low. A load below slide_fraction of the limit is not that of a slide under the same
+  /// friction, and one near 0 is no friction.
+  void learn(const S& friction) {
+    if (!is_finite(limit_)) {
+      limit_ = friction > S(1e-6) ? friction : limit_;
+    } else if (!(friction < S(options_.slide_fraction) * limit_)) {
+      const S top = S(max_rise) * limit_, toward = friction < top ? friction : top;
+      limit_ += (toward > limit_ ? S(0.5) : S(0.1)) * (toward - limit_);
     }
   }
 
-  void judge(bool slides, const State& state, SlipResult<S>& result) const {
-    result.limit = state.limit_;
-    if (!is_finite(state.limit_)) {
-      result.status = FrictionLimitStatus::no_limit;
-      return;
+  /// The largest L of the `age` frames before this one, of which the first is the reference; NaN if
+  /// one of them is unknown.
+  S highest_of_last(Index age) const {
+    S highest = not_a_number<S>();
+    const auto room = static_cast<Index>(loads_.size());
+    for (Index k = 1; k <= (std::min)(age, room); ++k) {
+      const S& load = loads_[(next_ + loads_.size() - static_cast<std::size_t>(k)) % loads_.size()];
+      if (!is_finite(load)) {
+        return load;
+      }
+      highest = highest > load ? highest : load;
     }
-    result.margin = S(1) - result.friction / state.limit_;
-    if (!(result.friction > S(options_.slide_fraction) * state.limit_)) {
-      result.status = FrictionLimitStatus::held;
-      return;
-    }
-    result.status = FrictionLimitStatus::sliding;
-    result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
-    result.stick_ratio = S(0);
-    result.update = RatioUpdate::fresh;
+    return highest;
   }
 
   FrictionLimitOptions options_;
+  S limit_;
+  std::array<S, 64> loads_;  ///< of the last frames; NaN: unknown
+  std::size_t next_ = 0;
 };
 
 }  // namespace v0

@@ -6,33 +6,10 @@
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// How current the stick ratio is.
-enum class RatioUpdate : std::uint8_t {
-  fresh,    ///< the ratio is that of this call
-  unmoved,  ///< the dots were seen but moved too little for a new ratio: the last one still applies
-  missing,  ///< there is no usable ratio
-  no_contact,  ///< nothing touches: there is no object, or it has just been lost
-};
-
-/// The update that a status of the stick ratio means.
-template <class StickStatus>
-  requires requires {
-    StickStatus::updated;
-    StickStatus::standing;
-    StickStatus::no_reference;
-    StickStatus::no_contact;
-  }
-constexpr RatioUpdate update_of(StickStatus status) {
-  const bool unmoved = status == StickStatus::standing || status == StickStatus::no_reference;
-  return status == StickStatus::updated      ? RatioUpdate::fresh
-         : unmoved                           ? RatioUpdate::unmoved
-         : status == StickStatus::no_contact ? RatioUpdate::no_contact
-                                             : RatioUpdate::missing;
-}
 
 enum class GripStatus : std::uint8_t {
   holding,  ///< the force does not change

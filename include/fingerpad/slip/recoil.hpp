@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -16,8 +16,8 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/slip/detail/dot_doubts.hpp"

@@ -16,8 +16,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/slip/detail/stick_state.hpp"
 #include "fingerpad/slip/stick_result.hpp"
@@ -41,7 +41,8 @@ struct StickTest {
   /// the newest stored one.
   double store = 0.025;
   /// delta_0, > 0. A dot slips if its residual from the object's motion is more than this times
-  /// d_max / U. For dots with other noise than the published 0.06 px of 20 see calibrate/dot_noise.hpp.
+  /// d_max / U. For dots with other noise than the published 0.06 px of 20 see
+  /// calibrate/dot_noise.hpp.
   double slip = 0.012;
   /// Pitch in the unit of the dots, >= 0. 0: measured in the first frame of each contact; 1: the
   /// lengths above are in the unit of the dots, as they are where no neighbours are in contact.

@@ -16,7 +16,6 @@
 
 #include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
-#include "fingerpad/slip/slipping_dots.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -164,20 +163,17 @@ struct FingertipDots {
     SpatialStickRatio<> stick;
     SpatialStickRatio<>::State stick_state;
     FrictionLimit<> friction;
-    FrictionLimit<>::State friction_state;
 
     explicit Followed(const FingertipOptions& o)
         : motion(o.free_dots_mm),
           motion_state(motion.start()),
           stick(o.free_dots_mm.rows(), o.free_dots_mm.cols(), o.stick),
           stick_state(stick.start()),
-          friction(o.friction),
-          friction_state(friction.start()) {}
+          friction(o.friction) {}
   };
   OwnedGrid<Point3<double>> at_mm;
   OwnedGrid<std::uint8_t> touching;
   OwnedGrid<DotState> states;
-  OwnedGrid<std::uint8_t> slips;
   double radius_px;
   std::optional<Followed> followed;  // empty without dots
 
@@ -185,7 +181,6 @@ struct FingertipDots {
       : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         touching(at_mm.rows, at_mm.cols),
         states(at_mm.rows, at_mm.cols),
-        slips(at_mm.rows, at_mm.cols),
         radius_px(o.dot_radius_px) {
     expects(radius_px >= 0 && radius_px <= 1000, "FingertipOptions", "dot_radius_px", radius_px,
             "in [0, 1000]");
@@ -208,7 +203,7 @@ struct FingertipDots {
     if (followed) {
       followed->motion_state = followed->motion.start();
       followed->stick_state.reset();
-      followed->friction_state.reset();
+      followed->friction.reset();
     }
   }
 
@@ -240,10 +235,11 @@ struct FingertipDots {
   template <class Watch>
   void conclude(FingertipResult& touch, Watch& watch) {
     if (followed) {
-      touch.slip = followed->friction(load_of(touch), touch.stick, followed->friction_state);
-      slipping_dots(touch.stick, touch.slip, states.view(), slips.view());
-      touch.motion =
-          followed->motion(at_mm.view(), touching.view(), slips.view(), followed->motion_state);
+      touch.slip = followed->friction(load_of(touch), touch.stick);
+      const LazyView slips(states.rows, states.cols, [&](Index i, Index j) {
+        return !touch.slip.holds(states.view()(i, j));
+      });
+      touch.motion = followed->motion(at_mm.view(), touching.view(), slips, followed->motion_state);
     }
     watch(FingertipStage::motion);
   }
