@@ -87,7 +87,7 @@ TEST_CASE("intensity depth: the law holds pixel by pixel, whatever the lamp", "[
     }
     IntensityDepth<double> depth(free, law, {.saturated = 1000});
     Image<double> out(20, 30);
-    RC_ASSERT(depth(now, out).valid_px == 600);
+    (void)depth(now, out);
     const double expected = l * (law.linear_mm + l * (law.square_mm + l * law.cube_mm));
     for (const double found : out.cells) {
       RC_ASSERT(std::abs(found - expected) < 1e-12 * (1 + std::abs(expected)));
@@ -110,8 +110,8 @@ TEST_CASE("intensity depth: bytes and numbers, one answer", "[intensity_depth]")
   IntensityDepth<> depth(free, {});
   Image<float> a(20, 30);
   Image<float> b(20, 30);
-  CHECK(depth(now, a).accepted());
-  CHECK(depth(now_float, b).accepted());
+  CHECK(depth(now, a) != FrameStatus::refused);
+  CHECK(depth(now_float, b) != FrameStatus::refused);
   for (std::size_t k = 0; k < a.cells.size(); ++k) {
     CHECK(std::abs(a.cells[k] - b.cells[k]) < 1e-5F);
   }
@@ -126,8 +126,7 @@ TEST_CASE("intensity depth: bad pixels have no depth and change no other", "[int
   now(21, 20) = 0;
   now(30, 1) = std::numeric_limits<double>::infinity();
   Image<double> out(40, 40);
-  const auto result = depth(now, out);
-  CHECK(result.valid_px == 1596);
+  (void)depth(now, out);
   Index missing = 0;
   for (const double found : out.cells) {
     missing += found != found;
@@ -142,8 +141,7 @@ TEST_CASE("intensity depth: no depth where the law overflows", "[intensity_depth
   Image<double> now(8, 8, 200.0);
   now(2, 3) = 2;
   Image<float> out(8, 8);
-  const auto result = depth(now, out);
-  CHECK(result.valid_px == 63);
+  (void)depth(now, out);
   CHECK(out(2, 3) != out(2, 3));
   CHECK(out(2, 4) == 0);
 }
@@ -158,7 +156,7 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
   const auto spread = [&](double smoothing_px) {
     IntensityDepth<double> depth(free, {}, {.smoothing_px = smoothing_px});
     Image<double> out(60, 60);
-    CHECK(depth(now, out).accepted());
+    CHECK(depth(now, out) != FrameStatus::refused);
     double sum = 0;
     for (const double found : out.cells) {
       sum += square(found - 3 * std::log(140.0 / 120));
@@ -186,7 +184,7 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     const auto see = [&](const Point2<double>& way_px) {
       const auto frame = ball.frame(true, way_px);
       BallSeen seen;
-      RC_ASSERT(depth(frame, seen.depth_mm).ok());
+      RC_ASSERT(depth(frame, seen.depth_mm) == FrameStatus::ok);
       seen.found = gel(mat_of(frame));
       RC_ASSERT(seen.found.ok());
       for (Index i = 0; i < PressedBall::rows; ++i) {
@@ -262,7 +260,7 @@ TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") 
   const Image<double> free(20, 30, 100.0);
   IntensityDepth<double> depth(free, {});
   Image<double> out(20, 30, 7.0);
-  CHECK(!depth(Image<double>(20, 29), out).accepted());
+  CHECK(depth(Image<double>(20, 29), out) == FrameStatus::refused);
   CHECK(out(3, 3) == 7);
 
   const auto law = [&](const IntensityLaw<>& given) {

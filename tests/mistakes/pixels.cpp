@@ -121,7 +121,7 @@ std::string of_intensity(const std::string& mistake) {
   IntensityDepth<double> depth(exchanged ? now : free, {});
   Pixels out(size, size);
   const auto r = depth(exchanged ? free : spoilt(mistake, now, free), out);
-  return !r.ok()                                 ? name_of(r.status)
+  return r != FrameStatus::ok                    ? name_of(r)
          : test::largest_error(right, out) < 0.2 ? "found"
                                                  : "another depth";
 }

@@ -261,7 +261,7 @@ IntensityFit<S> fit_intensity(const Free& free,
   for (const auto& frame : pressed) {
     presses.push_back({ball, cols, std::vector<S>(static_cast<std::size_t>(rows * cols))});
     const StridedView<S> log(presses.back().log.data(), rows, cols, cols);
-    const S start_mm = log_ratio(frame, log).ok() ? presses.back().start() : S(0);
+    const S start_mm = log_ratio(frame, log) == FrameStatus::ok ? presses.back().start() : S(0);
     expects(S(0) < start_mm, owner, "press", static_cast<long long>(presses.size()) - 1,
             "of a ball: a round darkest spot, and beside it as bright as the free pad");
     law[0] += start_mm;

@@ -23,7 +23,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
@@ -64,17 +63,6 @@ inline std::string check(const IntensityOptions& options) {
                 {"saturated", saturated, {.min = options.dark, .above_min = true}}});
 }
 
-/// The outcome of a frame. The status is not_of_this_pad if, along half of the frame's edge, the
-/// light differs from that of the free pad by more than 5 %. The cause is another lamp, exposure,
-/// channel or unit of grey, or an object as large as the frame.
-struct [[nodiscard]] IntensityDepthResult {
-  FrameStatus status = FrameStatus::refused;
-  Index valid_px = 0;  ///< pixels with a depth
-
-  bool accepted() const { return status != FrameStatus::refused; }
-  bool ok() const { return status == FrameStatus::ok; }
-};
-
 /// Computes the indentation in frames of one size, whose pixels are numbers: a grey image, or one
 /// channel of a colour image. Use one object a thread. A frame takes bounded time and allocates
 /// nothing; O(rows cols).
@@ -88,13 +76,17 @@ class IntensityDepth {
         options_(options),
         rows_(as_view(free).rows()),
         cols_(as_view(free).cols()),
-        kernel_(detail::EvenKernel<S>::gaussian((std::max)(options.smoothing_px, 1e-3))),
-        log_(rows_, cols_, kernel_.reach()),
+        reach_(static_cast<Index>(std::ceil(3 * options.smoothing_px))),
+        log_(static_cast<std::size_t>((rows_ + 2 * reach_) * (cols_ + 2 * reach_)), S(0)),
         weight_(log_),
         between_(log_),
         mean_(log_),
         share_(log_),
         edge_(static_cast<std::size_t>(2 * (rows_ + cols_))) {
+    for (Index k = 0; k <= reach_; ++k) {
+      const double x = k == 0 ? 0 : static_cast<double>(k) / options.smoothing_px;
+      kernel_.push_back(S(std::exp(-x * x / 2)));
+    }
     for (std::size_t level = 0; level < log_of_byte_.size(); ++level) {
       log_of_byte_[level] = log_of(static_cast<int>(level));
     }
@@ -107,34 +99,32 @@ class IntensityDepth {
   }
 
   /// Writes the indentation of the gel in mm; NaN where it is unknown. The height of the surface is
-  /// the thickness of the gel minus the indentation. Grids of another size are refused.
+  /// the thickness of the gel minus the indentation. Grids of another size are refused. Not of this
+  /// pad: along half of the frame's edge, the light differs from that of the free pad by more than
+  /// 5 %. The cause is another lamp, exposure, channel or unit of grey, or an object as large as
+  /// the frame.
   template <grid Frame, class Depth>
-  IntensityDepthResult operator()(const Frame& frame, Depth&& depth_mm) {
+  [[nodiscard]] FrameStatus operator()(const Frame& frame, Depth&& depth_mm) {
     detail::writes_to<Depth, S>();
     const auto from = as_view(frame);
     const auto to = as_view(depth_mm);
     if (from.rows() != rows_ || from.cols() != cols_ || !same_size(from, to)) {
-      return {};
+      return FrameStatus::refused;
     }
     read(from);
-    IntensityDepthResult result;
-    result.status = is_free_at_edge() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
-    const bool smooth = options_.smoothing_px > 0;
-    if (smooth) {
-      kernel_(log_, between_, mean_);
-      kernel_(weight_, between_, share_);
-    }
+    smooth(log_, mean_);
+    smooth(weight_, share_);
     for (Index i = 0; i < rows_; ++i) {
+      const Index row = cell(i, 0);
       for (Index j = 0; j < cols_; ++j) {
-        const S l = smooth ? mean_(i, j) / share_(i, j) : log_(i, j);
-        const S depth = pressed_depth_mm(law_, l);
+        const auto k = static_cast<std::size_t>(row + j);
+        const S depth = pressed_depth_mm(law_, mean_[k] / share_[k]);
         // no depth without information, even if the neighbours have some, or if the law overflows
-        const bool is_known = S(0) < weight_(i, j) && is_finite(depth);
-        result.valid_px += is_known ? 1 : 0;
+        const bool is_known = S(0) < weight_[k] && is_finite(depth);
         to(i, j) = static_cast<cell_t<Depth>>(is_known ? depth : not_a_number<S>());
       }
     }
-    return result;
+    return is_free_at_edge() ? FrameStatus::ok : FrameStatus::not_of_this_pad;
   }
 
   Index rows() const { return rows_; }
@@ -164,17 +154,44 @@ class IntensityDepth {
     }
   }
 
+  /// Offset of a pixel in images with a border of zeros as wide as the kernel reaches.
+  Index cell(Index row, Index col) const {
+    return (row + reach_) * (cols_ + 2 * reach_) + col + reach_;
+  }
+
   /// Sets log_ to the logarithms of free over now, and weight_ to 1 where they are known, else 0.
   template <class View>
   void read(const View& from) {
     const S* free = free_.data();
     for (Index i = 0; i < rows_; ++i) {
+      S *log = log_.data() + cell(i, 0), *weight = weight_.data() + cell(i, 0);
       for (Index j = 0; j < cols_; ++j, ++free) {
         const S ratio = *free - log_of(from(i, j));
         const bool known = is_finite(ratio);
-        log_(i, j) = known ? ratio : S(0);
-        weight_(i, j) = S(known ? 1 : 0);
+        log[j] = known ? ratio : S(0);
+        weight[j] = S(known ? 1 : 0);
       }
+    }
+  }
+
+  /// Sums weighted with the kernel, along rows and then along columns.
+  void smooth(const std::vector<S>& from, std::vector<S>& to) {
+    smooth(from, 1, between_);
+    smooth(between_, cols_ + 2 * reach_, to);
+  }
+  void smooth(const std::vector<S>& from, Index step, std::vector<S>& to) const {
+    for (Index i = 0; i < rows_; ++i) {
+      const S* row = from.data() + cell(i, 0);
+      S* sums = to.data() + cell(i, 0);
+      detail::for_each_cell<S>(cols_, [&]<class V>(Index j) {
+        V sum = detail::load_cells<V, S>(row + j) * kernel_[0];
+        for (Index k = 1; k <= reach_; ++k) {
+          const V both = detail::load_cells<V, S>(row + j - k * step) +
+                         detail::load_cells<V, S>(row + j + k * step);
+          sum = sum + both * kernel_[static_cast<std::size_t>(k)];
+        }
+        detail::store_cells<S>(sums + j, sum);
+      });
     }
   }
 
@@ -183,8 +200,9 @@ class IntensityDepth {
   bool is_free_at_edge() {
     edge_.clear();
     const auto add = [&](Index i, Index j) {
-      if (S(0) < weight_(i, j)) {
-        edge_.push_back(log_(i, j));
+      const auto k = static_cast<std::size_t>(cell(i, j));
+      if (S(0) < weight_[k]) {
+        edge_.push_back(log_[k]);
       }
     };
     for (Index j = 0; j < cols_; ++j) {
@@ -210,9 +228,10 @@ class IntensityDepth {
   Index rows_, cols_;
   std::vector<S> free_;  // logarithms of the free pad
   std::array<S, 256> log_of_byte_;
-  detail::EvenKernel<S> kernel_;
-  detail::PaddedCells<S> log_, weight_;  // of free over now; 1 where it is known
-  detail::PaddedCells<S> between_, mean_, share_;
+  Index reach_;  // of the kernel
+  std::vector<S> kernel_;
+  std::vector<S> log_, weight_;  // of free over now; 1 where it is known
+  std::vector<S> between_, mean_, share_;
   detail::ReservedVector<S> edge_;
 };
 
