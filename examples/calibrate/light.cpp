@@ -202,10 +202,8 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
   const double mean_mm = cv::mean(free_mm, free_mm == free_mm)[0];
   const double pitch = point_at(camera, camera.center_y_px, camera.center_x_px + 1, mean_mm).x -
                        point_at(camera, camera.center_y_px, camera.center_x_px, mean_mm).x;
-  const auto fit = fingerpad::fit_neighbour_light(
-      pitch, free_mm, std::span<const DepthMap>(measured),
-      std::span<const DepthMap>(known.depths_mm),
-      {.max_radius_px = max_radius_px, .pixel_aspect = camera.pixel_aspect});
+  const auto fit = fingerpad::fit_neighbour_light(pitch, free_mm, measured, known.depths_mm,
+                                                  {1, max_radius_px}, camera.pixel_aspect);
   Report report{.what = "neighbour_light", .residual = fit.rms_after_mm, .residual_unit = "mm"};
   report.parameters = {{"radius_px", static_cast<double>(fit.light.radius_px)},
                        {"m0_mm_per_rad", fit.light.m0_mm_per_rad, fit.m0_sd},

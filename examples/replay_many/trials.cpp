@@ -111,9 +111,8 @@ Trial neighbour_light() {
       measured.push_back(one);
       truth.push_back(other);
     }
-    const auto found = fingerpad::fit_neighbour_light(
-        light_pitch_mm, free_mm, std::span<const Map>(measured), std::span<const Map>(truth),
-        {light.radius_px, light.radius_px, 1});
+    const auto found = fingerpad::fit_neighbour_light(light_pitch_mm, free_mm, measured, truth,
+                                                      {light.radius_px, light.radius_px});
     return Estimate{{found.light.m0_mm_per_rad, found.light.n_per_mm},
                     diagonal({found.m0_sd, found.n_sd})};
   };

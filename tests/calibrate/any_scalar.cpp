@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -65,9 +64,7 @@ struct LightByPitch {
         l += 0.02 * off * off;
       }
     }
-    const auto fit =
-        fit_neighbour_light<S>(S(0.2) * p, free, std::span<const Image<double>>(measured),
-                               std::span<const Image<double>>(truth), {3, 3, 2});
+    const auto fit = fit_neighbour_light<S>(S(0.2) * p, free, measured, truth, {3, 3});
     return {fit.light.m0_mm_per_rad, fit.light.n_per_mm, fit.rms_after_mm, fit.m0_sd};
   }
 };
@@ -146,7 +143,8 @@ struct FreePadByPitch {
       }));
     }
     const auto pad = fit_contact_threshold<S>(plan, frames, {6});
-    return {pad.threshold_per_mm, pad.median_per_mm, pad.noise_per_mm, pad.median_error_per_mm};
+    return {S(pad.threshold_per_mm), S(pad.median_per_mm), S(pad.noise_per_mm),
+            S(pad.median_error_per_mm)};
   }
 };
 

@@ -3,6 +3,7 @@
 #include "fingerpad/calibrate/neighbour_light.hpp"
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -56,14 +57,14 @@ Frames truths(const NeighbourLight<double>& light, const Map& reference, const F
 NeighbourLightFit<> fit_of(const Map& reference,
                            const Frames& measured,
                            const Frames& truth,
-                           const NeighbourLightSearch& search = {}) {
-  return fit_neighbour_light(pitch_mm, reference, std::span<const Map>(measured),
-                             std::span<const Map>(truth), search);
+                           const std::array<Index, 2>& radii_px,
+                           double pixel_aspect = 1) {
+  return fit_neighbour_light(pitch_mm, reference, measured, truth, radii_px, pixel_aspect);
 }
 
 std::string refusal(const Map& reference, const Frames& measured, const Frames& truth) {
   try {
-    (void)fit_of(reference, measured, truth, {3, 4, 2});
+    (void)fit_of(reference, measured, truth, {3, 4});
   } catch (const parameter_error& error) {
     return error.what();
   }
@@ -78,8 +79,8 @@ TEST_CASE("calibration of neighbour light: noise-free frames give it back") {
                                        test::uniform(-0.5, 0.5), *rc::gen::element(1.0, 1.25)};
     const Map reference = membrane(0, 0);
     const Frames measured = {membrane(1, 1), membrane(2.5, -2)};
-    const auto fit = fit_of(reference, measured, truths(light, reference, measured),
-                            {1, 12, 2, light.pixel_aspect});
+    const auto fit = fit_of(reference, measured, truths(light, reference, measured), {1, 12},
+                            light.pixel_aspect);
     RC_ASSERT(fit.light.radius_px == light.radius_px);
     RC_ASSERT(std::abs(fit.light.m0_mm_per_rad / light.m0_mm_per_rad - 1) < 1e-9);
     RC_ASSERT(std::abs(fit.light.n_per_mm - light.n_per_mm) < 1e-9);
@@ -105,7 +106,7 @@ TEST_CASE("calibration of neighbour light: the stated deviations are those of ma
     for (Map& l : truth) {
       l = l.unaryExpr([&](double v) { return v + noise(random); });
     }
-    fit = fit_of(reference, measured, truth, {6, 6, 1});
+    fit = fit_of(reference, measured, truth, {6, 6});
     m0_sq += square(fit.light.m0_mm_per_rad - light.m0_mm_per_rad) / trials;
     n_sq += square(fit.light.n_per_mm - light.n_per_mm) / trials;
   }
@@ -120,7 +121,7 @@ TEST_CASE("calibration of neighbour light: compensation with the fit removes the
   const Map reference = membrane(0, 0);
   const Frames measured = {membrane(2, 1)};
   const Frames truth = truths(light, reference, measured);
-  const auto fit = fit_of(reference, measured, truth, {5, 9, 3});
+  const auto fit = fit_of(reference, measured, truth, {5, 9});
   NeighbourLightCompensation<double> compensation(fit.light, pitch_mm, reference);
   Map out(64, 80);
   REQUIRE(compensation(measured[0], out) == FrameStatus::ok);
@@ -142,7 +143,8 @@ TEST_CASE("calibration of neighbour light: degenerate frames are refused") {
   CHECK(refusal(reference, {Map::Constant(64, 80, std::nan(""))}, {reference})
             .find("pixels with a reference") != std::string::npos);
   CHECK(refusal(reference, pressed, pressed).find("independent share of n") != std::string::npos);
-  CHECK_THROWS_AS(fit_neighbour_light(0.0, reference, std::span<const Map>(pressed),
-                                      std::span<const Map>(pressed)),
-                  parameter_error);
+  CHECK_THROWS_AS(fit_neighbour_light(0.0, reference, pressed, pressed), parameter_error);
+  CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {0, 5}), parameter_error);
+  CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {5, 4}), parameter_error);
+  CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {1, 5}, 20), parameter_error);
 }

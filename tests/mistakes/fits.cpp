@@ -11,7 +11,6 @@
 #include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -181,9 +180,8 @@ struct Depths {
 };
 
 std::string said_of_neighbours(const Depths& depths) {
-  const auto fit = fit_neighbour_light(
-      depths.pitch_mm, depths.reference, std::span<const Pixels>(depths.measured),
-      std::span<const Pixels>(depths.truth), {.min_radius_px = 3, .max_radius_px = 7});
+  const auto fit =
+      fit_neighbour_light(depths.pitch_mm, depths.reference, depths.measured, depths.truth, {3, 7});
   const bool right = fit.light.radius_px == 5 && std::abs(fit.light.m0_mm_per_rad - 0.002) < 2e-4;
   return !fit.ok() ? text_of(fit) : right ? "right" : "wrong";
 }

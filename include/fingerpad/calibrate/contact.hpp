@@ -57,66 +57,68 @@ struct Scatter {
 /// pad in mm: one determines the level, two the noise. Camera and ring must be those of the contact
 /// test. Pixels without a curvature in a frame do not count. Refuses bad parameters, frames of
 /// several sizes, and a pad without a positive threshold (parameter_error). Not ok: a pad flatter
-/// than a sphere of 1 m, and one of which less than half is seen. For double, curvatures are float,
-/// as in the contact test. Allocates; O(frames rows cols directions).
-template <scalar S = double, class CameraType, class Frames>
-ThresholdFit<S> fit_contact_threshold(const CameraType& camera,
+/// than a sphere of 1 m, and one of which less than half is seen. Curvatures are computed in S, as
+/// in the contact test, and summed in double if S is float. Allocates; O(frames rows cols
+/// directions).
+template <scalar S = float,
+          class CameraType,
+          class Frames,
+          class T = std::conditional_t<std::is_same_v<S, float>, double, S>>
+ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
                                       const Frames& free_mm,
                                       const CurvatureRing& ring = {}) {
   const char* const owner = "fit_contact_threshold";
   expects(std::size(free_mm) > 0, owner, "number of frames", 0LL, ">= 1");
   const auto first = as_view(*std::begin(free_mm));
   const Index rows = first.rows(), cols = first.cols();
-  using Curvature = std::conditional_t<std::is_same_v<S, double>, float, S>;
-  CurvatureMap<Curvature> map(camera, rows, cols, ring);
-  std::vector<Curvature> curvature(static_cast<std::size_t>(rows * cols));
-  std::vector<S> known;
-  std::vector<detail::Scatter<S>> pixels(curvature.size());
-  detail::Scatter<S> median;
-  const auto quantile = [](std::vector<S>& of, double share) {
+  CurvatureMap<S> map(camera, rows, cols, ring);
+  std::vector<S> curvature(static_cast<std::size_t>(rows * cols));
+  std::vector<T> known;
+  std::vector<detail::Scatter<T>> pixels(curvature.size());
+  detail::Scatter<T> median;
+  const auto quantile = [](std::vector<T>& of, double share) {
     const auto at = of.begin() + static_cast<Index>(share * static_cast<double>(of.size() - 1));
     std::nth_element(of.begin(), at, of.end());
     return *at;
   };
-  S count = S(0);  // of frames
+  T count = T(0);  // of frames
   for (const auto& depth_mm : free_mm) {
-    const bool fits =
-        map(depth_mm, StridedView<Curvature>(curvature.data(), rows, cols, cols)).ok();
+    const bool fits = map(depth_mm, StridedView<S>(curvature.data(), rows, cols, cols)).ok();
     expects(fits, owner, "rows of a frame", static_cast<long long>(as_view(depth_mm).rows()),
             "of the same size as the first frame");
-    count += S(1);
+    count += T(1);
     known.clear();
     for (std::size_t k = 0; k < pixels.size(); ++k) {
-      pixels[k].add(S(curvature[k]), count);
+      pixels[k].add(T(curvature[k]), count);
       if (is_finite(pixels[k].mean)) {
-        known.push_back(S(curvature[k]));
+        known.push_back(T(curvature[k]));
       }
     }
     expects(!known.empty(), owner, "pixels", 0LL, ">= 1 with a curvature in every frame");
     median.add(quantile(known, 0.5), count);
   }
   known.clear();
-  S squares = S(0);
-  for (const detail::Scatter<S>& pixel : pixels) {
+  T squares = T(0);
+  for (const detail::Scatter<T>& pixel : pixels) {
     if (is_finite(pixel.mean)) {
       known.push_back(pixel.mean);
       squares += pixel.squares;
     }
   }
-  ThresholdFit<S> fit;
-  if (S(1) < count) {
+  ThresholdFit<T> fit;
+  if (T(1) < count) {
     using std::sqrt;
-    const auto root = [](const S& x) { return S(0) < x ? sqrt(x) : S(0); };
-    fit.noise_per_mm = root(squares / (S(static_cast<double>(known.size())) * (count - S(1))));
-    fit.median_error_per_mm = root(median.squares / (count * (count - S(1))));
+    const auto root = [](const T& x) { return T(0) < x ? sqrt(x) : T(0); };
+    fit.noise_per_mm = root(squares / (T(static_cast<double>(known.size())) * (count - T(1))));
+    fit.median_error_per_mm = root(median.squares / (count * (count - T(1))));
   }
   fit.median_per_mm = quantile(known, 0.5);
   fit.threshold_per_mm =
-      (std::min)(fit.median_per_mm / S(2), quantile(known, 0.001) - S(2) * fit.noise_per_mm);
+      (std::min)(fit.median_per_mm / T(2), quantile(known, 0.001) - T(2) * fit.noise_per_mm);
   expects(
-      S(0) < fit.threshold_per_mm, owner, "threshold_per_mm", fit.threshold_per_mm,
+      T(0) < fit.threshold_per_mm, owner, "threshold_per_mm", fit.threshold_per_mm,
       "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");
-  if (fit.median_per_mm < S(1e-3)) {
+  if (fit.median_per_mm < T(1e-3)) {
     fit.cause = cause::depths_not_in_mm;
   } else if (2 * known.size() < pixels.size()) {
     fit.cause = "fewer than half of the pixels have a depth: check calibration, exposure and frame";
