@@ -90,40 +90,6 @@ struct FlatAreaPoint {
   }
 };
 
-/// Plan area within a curve, and the integral of the curvature over it.
-template <scalar S>
-struct FlatAreaCurve {
-  S area_mm2 = S(0);
-  S flux_mm = S(0);
-  Index points = 0;
-  Index unseen = 0;
-};
-
-/// Where the least-squares parabola of the areas over the fluxes meets flux = 0. NaN where they do
-/// not tell three parameters.
-template <scalar S>
-S area_without_flux(const std::vector<FlatAreaCurve<S>>& curves, std::size_t count) {
-  S mean = S(0);
-  for (std::size_t k = 0; k < count; ++k) {
-    mean = mean + curves[k].flux_mm / S(static_cast<double>(count));
-  }
-  SmallMatrix<S, 3> sums = zero_matrix<S, 3>();
-  std::array<S, 3> right = zeros<S, 3>();
-  for (std::size_t k = 0; k < count; ++k) {
-    const S x = curves[k].flux_mm - mean;
-    const std::array<S, 3> terms = {S(1), x, x * x};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        sums[i][j] = sums[i][j] + terms[i] * terms[j];
-      }
-      right[i] = right[i] + terms[i] * curves[k].area_mm2;
-    }
-  }
-  const NormalEquations<S, 3> equations(sums);
-  const std::array<S, 3> c = equations.solve(right);
-  return equations.good ? c[0] - mean * (c[1] - mean * c[2]) : not_a_number<S>();
-}
-
 }  // namespace detail
 
 /// Evaluates (EA2) on a depth map and its contact mask. The map is sampled on a lattice of points
@@ -136,7 +102,6 @@ S area_without_flux(const std::vector<FlatAreaCurve<S>>& curves, std::size_t cou
 /// spacing_mm / pitch.
 template <scalar S = double>
 class EquivalentFlatArea {
-  using Curve = detail::FlatAreaCurve<S>;
   static constexpr Index straight = 5, diagonal = 7;  // steps of the distance (Borgefors 1986)
   static constexpr std::size_t min_curves = 5;
 
@@ -148,32 +113,33 @@ class EquivalentFlatArea {
                      Index cols,
                      const FlatAreaOptions& options = {})
       : options_(checked(camera, rows, cols, options)), image_rows_(rows), image_cols_(cols) {
-    const double pitch_mm = static_cast<double>(value(camera.pitch_mm));
-    const double height_mm = pitch_mm * static_cast<double>(value(camera.pixel_aspect));
-    row_step_ =
-        (std::max)(Index(1), static_cast<Index>(std::lround(options.spacing_mm / height_mm)));
-    col_step_ =
-        (std::max)(Index(1), static_cast<Index>(std::lround(options.spacing_mm / pitch_mm)));
+    const double width_mm = static_cast<double>(value(camera.pitch_mm));
+    const double height_mm = width_mm * static_cast<double>(value(camera.pixel_aspect));
+    const auto step = [&](double pixel_mm) {
+      return (std::max)(Index(1), static_cast<Index>(std::lround(options.spacing_mm / pixel_mm)));
+    };
+    row_step_ = step(height_mm);
+    col_step_ = step(width_mm);
     rows_ = (rows - 1) / row_step_ + 1;
     cols_ = (cols - 1) / col_step_ + 1;
     const double step_mm =
-        (static_cast<double>(row_step_) * height_mm + static_cast<double>(col_step_) * pitch_mm) /
+        (static_cast<double>(row_step_) * height_mm + static_cast<double>(col_step_) * width_mm) /
         2;
     margin_ = static_cast<Index>(
         std::lround(static_cast<double>(straight) * options.margin_mm / step_mm));
+    const auto eye = cast<S>(camera);
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        const auto at = [&](double depth_mm) {
-          using C = decltype(camera.pitch_mm);
-          const auto p = point_at(camera, C(static_cast<double>(i * row_step_)),
-                                  C(static_cast<double>(j * col_step_)), C(depth_mm));
-          return Point3<S>{S(p.x), S(p.y), S(p.z)};
+        const auto seen = [&](int depth_mm) {
+          return point_at(eye, S(static_cast<double>(i * row_step_)),
+                          S(static_cast<double>(j * col_step_)), S(depth_mm));
         };
-        rays_.push_back({at(0), at(1) - at(0)});
+        rays_.push_back({seen(0), seen(1) - seen(0)});
       }
     }
-    points_.resize(rays_.size(), {S(0), S(0), S(0)});
-    distances_.assign(static_cast<std::size_t>((rows_ + 2) * (cols_ + 2)), far());
+    const std::size_t cells = static_cast<std::size_t>((rows_ + 2) * (cols_ + 2));
+    points_.assign(cells, detail::missing_point<S>());
+    distances_.assign(cells, far());
     curves_.resize(static_cast<std::size_t>(rows_ + cols_));
   }
 
@@ -187,23 +153,20 @@ class EquivalentFlatArea {
     if (!same_size(mask, depth) || depth.rows() != image_rows_ || depth.cols() != image_cols_) {
       return result;
     }
+    const Ray* ray = rays_.data();
     for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        const Ray& ray = rays_[place(i, j)];
+      for (Index j = 0; j < cols_; ++j, ++ray) {
         const Index row = i * row_step_, col = j * col_step_;
-        points_[place(i, j)] = ray.on_plate + S(depth(row, col)) * ray.per_depth;
-        *distance(i, j) = is_contact(cell_t<Mask>(mask(row, col))) ? 0 : far();
+        points_[place(i, j)] = ray->on_plate + S(depth(row, col)) * ray->per_depth;
+        distances_[place(i, j)] = is_contact(cell_t<Mask>(mask(row, col))) ? 0 : far();
       }
     }
     spread();
     collect();
-    const std::size_t count = usable();
-    if (count >= min_curves) {
-      const S area = detail::area_without_flux(curves_, count);
-      if (is_finite(area) && value(area) > 0) {
-        result.area_mm2 = area;
-        result.variance_mm4 = square(S(options_.tension_share) * (curves_[0].area_mm2 - area));
-      }
+    const S area = area_without_flux();
+    if (is_finite(area) && value(area) > 0) {
+      result.area_mm2 = area;
+      result.variance_mm4 = square(S(options_.tension_share) * (curves_[0].area_mm2 - area));
     }
     return result;
   }
@@ -214,6 +177,11 @@ class EquivalentFlatArea {
  private:
   struct Ray {
     Point3<S> on_plate, per_depth;
+  };
+  /// Plan area within a curve, and the integral of the curvature over it.
+  struct Curve {
+    S area_mm2 = S(0), flux_mm = S(0);
+    Index points = 0, unseen = 0;
   };
 
   template <class CameraType>
@@ -227,27 +195,28 @@ class EquivalentFlatArea {
     return options;
   }
 
-  std::size_t place(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
-
-  /// The distance of a point from the contact, in a lattice with a border of far points.
-  Index* distance(Index i, Index j) { return distances_.data() + (i + 1) * (cols_ + 2) + j + 1; }
+  /// In a lattice with a border of points that are missing and far.
+  std::size_t place(Index i, Index j) const {
+    return static_cast<std::size_t>((i + 1) * (cols_ + 2) + j + 1);
+  }
   Index far() const { return straight * (rows_ + cols_); }
 
   /// From 0 in contact and far elsewhere to the distance from the contact, within 6 %.
   void spread() {
-    const auto from = [&](Index* here, Index next_row, Index before) {
-      *here = (std::min)({*here, here[next_row] + straight, here[next_row - 1] + diagonal,
-                          here[next_row + 1] + diagonal, here[before] + straight});
+    const auto from = [&](Index i, Index j, Index next_row, Index before) {
+      Index* here = distances_.data() + place(i, j);
+      const Index beside = (std::min)(here[next_row], here[before]) + straight;
+      const Index across = (std::min)(here[next_row - 1], here[next_row + 1]) + diagonal;
+      *here = (std::min)(*here, (std::min)(beside, across));
     };
-    const Index width = cols_ + 2;
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        from(distance(i, j), -width, -1);
+        from(i, j, -(cols_ + 2), -1);
       }
     }
     for (Index i = rows_; i-- > 0;) {
       for (Index j = cols_; j-- > 0;) {
-        from(distance(i, j), width, 1);
+        from(i, j, cols_ + 2, 1);
       }
     }
   }
@@ -258,15 +227,11 @@ class EquivalentFlatArea {
     const Index last = static_cast<Index>(curves_.size()) - 1;
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        const Index beyond = (std::max)(Index(0), *distance(i, j) - margin_);
+        const Index beyond = (std::max)(Index(0), distances_[place(i, j)] - margin_);
         Curve& curve =
             curves_[static_cast<std::size_t>((std::min)(last, (beyond + straight - 1) / straight))];
+        const detail::FlatAreaPoint<S> point(&points_[place(i, j)], cols_ + 2);
         ++curve.points;
-        if (i == 0 || j == 0 || i == rows_ - 1 || j == cols_ - 1) {
-          ++curve.unseen;
-          continue;
-        }
-        const detail::FlatAreaPoint<S> point(&points_[place(i, j)], cols_);
         if (is_finite(point.flux_mm) && !point.is_steep) {
           curve.area_mm2 = curve.area_mm2 + point.area_mm2;
           curve.flux_mm = curve.flux_mm + point.flux_mm;
@@ -288,17 +253,26 @@ class EquivalentFlatArea {
     }
   }
 
-  /// How many curves see enough, and more flux each than the one within.
-  std::size_t usable() const {
+  /// Where the least-squares parabola of the areas over the fluxes meets flux = 0. NaN unless
+  /// enough curves see enough, with more flux each than the one within. Fluxes are counted from
+  /// the first one's.
+  S area_without_flux() const {
+    const S first = curves_[0].flux_mm;
+    detail::ProductSums<S, 4> sums;  // of 1, x, x^2, area
     std::size_t count = 0;
     for (const Curve& curve : curves_) {
+      const S x = curve.flux_mm - first;
       const bool grows = count == 0 || value(curve.flux_mm) > value(curves_[count - 1].flux_mm);
       if (curve.points == 0 || 20 * curve.unseen > curve.points || !grows) {
         break;
       }
+      sums.add({S(1), x, x * x, curve.area_mm2});
       ++count;
     }
-    return count;
+    const detail::NormalEquations<S, 3> equations(sums.template corner<3>());
+    const std::array<S, 3> c = equations.solve(sums.template column<3>(3));
+    return count >= min_curves && equations.good ? c[0] - first * (c[1] - first * c[2])
+                                                 : not_a_number<S>();
   }
 
   FlatAreaOptions options_;
