@@ -20,12 +20,10 @@ int main() {
     const double x = 1.5 * double(k % n - 10), y = 1.5 * double(k / n - 10);
     free[std::size_t(k)] = {x, y, 13 - (x * x + y * y) / 40};
   }
-  const fingerpad::StridedView<const Dot> free_grid(free.data(), n, n, n);
   const fingerpad::StridedView<const Dot> dot_grid(dots.data(), n, n, n);
   const fingerpad::StridedView<const unsigned char> contact_grid(contact.data(), n, n, n);
 
-  const fingerpad::ObjectMotion motion(free_grid, {.reference_margin_mm = 0.1});  // once
-  auto state = motion.start();
+  fingerpad::ObjectMotion motion(n, n);  // once
 
   fingerpad::ObjectMotionResult<double> seen;
   fingerpad::Pose<double> plate;
@@ -38,7 +36,7 @@ int main() {
       const Dot pressed = {free[k].x, free[k].y, 11.5};
       dots[k] = contact[k] != 0 ? plate(pressed) : free[k];
     }
-    seen = motion(dot_grid, contact_grid, state);  // every frame
+    seen = motion(dot_grid, contact_grid);  // every frame
     if (frame % 5 == 0) {
       std::printf("frame %2d: %s, %td dots, at (%.3f, %.3f, %.3f) mm, angles %.4f %.4f %.4f rad\n",
                   frame, name_of(seen.status), seen.dots_used, seen.position_mm.x,

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Motion of an object from the dots in contact; "ns/pixel" is per update, per frame or per dot.
-// Errors of a rotation: of neighbourhoods rotated by any angle, measured with noise, and of
-// neighbourhoods sheared by 0.2. Errors of a frame: of attitude and place in all frames of ten
-// balls that roll 30 mm. Errors of dots in space: against the rays. Noise: 0.02 mm in the plane,
-// 0.05 mm in depth. "on scenes": a finite-element ball that rolls by 20 degrees, from noisy frames.
-#include "fingerpad/published/object_motion.hpp"
+// Motion of an object from the dots in contact; "ns/pixel" is per frame or per dot. Errors of a
+// frame: of attitude and place in all frames of ten balls that roll 30 mm. Errors of dots in space:
+// against the rays. Noise: 0.02 mm in the plane, 0.05 mm in depth. "on scenes": a finite-element
+// ball that rolls by 20 degrees, from noisy frames.
+#include "fingerpad/motion/object_motion.hpp"
 
 #include <cmath>
 #include <memory>
@@ -16,29 +15,16 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene_motion.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/published/object_motion.hpp"
 #include "support/pad.hpp"
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
-using fingerpad::detail::motion::Neighbourhood;
-using fingerpad::published::AnchoredComposition;
-using fingerpad::published::PublishedBasis;
-using fingerpad::published::SumOfAngles;
-using fingerpad::published::SymmetricFrame;
 
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-
-template <class S>
-Neighbourhood<S> as(const Neighbourhood<double>& n) {
-  Neighbourhood<S> out;
-  for (std::size_t k = 0; k < 9; ++k) {
-    out.dot[k] = {S(n.dot[k].x), S(n.dot[k].y), S(n.dot[k].z)};
-    out.found[k] = n.found[k];
-  }
-  return out;
-}
 
 template <class S>
 Rotation<double> in_double(const Rotation<S>& r) {
@@ -47,84 +33,6 @@ Rotation<double> in_double(const Rotation<S>& r) {
     out.m[i / 3][i % 3] = static_cast<double>(r.m[i / 3][i % 3]);
   }
   return out;
-}
-
-/// Angle between the true rotation and the one of Local, through the Euler angles that users read.
-template <class Local, class S>
-double turn_error_deg(const Neighbourhood<double>& before,
-                      const Neighbourhood<double>& after,
-                      const Rotation<double>& truth) {
-  const auto found = zyx_angles(Local::turn(as<S>(before), as<S>(after)).rotation);
-  return degrees * angle_between(in_double(rotation_of(found)), truth);
-}
-
-template <class Local, class S>
-void note_turns(bench::Counters& counters) {
-  test::Gauss gauss(7);
-  std::vector<double> noisy, exact, sheared;
-  for (int k = 0; k < 1000; ++k) {
-    const auto before = test::nine_dots();
-    const auto turn = test::turned_by({0.1 * gauss(), 0.1 * gauss(), 0.3 * gauss()});
-    auto rotated = before, measured = before, shear = before;
-    const double c = std::cos(0.01 * k), s = std::sin(0.01 * k);
-    for (std::size_t i = 0; i < 9; ++i) {
-      auto& p = rotated.dot[i];
-      p = turn(p);
-      measured.dot[i] = {p.x + 0.02 * gauss(), p.y + 0.02 * gauss(), p.z + 0.05 * gauss()};
-      // besides deforming, a shear by 0.2 rotates by atan(0.1) about the normal
-      auto& q = shear.dot[i];
-      const double along = 0.2 * (c * q.y - s * q.x);
-      q = {q.x + c * along, q.y + s * along, q.z};
-    }
-    noisy.push_back(turn_error_deg<Local, S>(before, measured, turn));
-    exact.push_back(turn_error_deg<Local, S>(before, rotated, turn));
-    sheared.push_back(
-        turn_error_deg<Local, S>(before, shear, test::turned_by({0, 0, -std::atan(0.1)})));
-  }
-  bench::note_errors(counters, "noisy dots", "deg", noisy);
-  bench::note_errors(counters, "sheared dots", "deg", sheared);
-  bench::note_errors(counters, "exact dots", "deg", exact);
-}
-
-/// Rotation from an anchor to now, composed with the earlier one, and its Euler angles.
-template <class Local, class S>
-void add_rotation(const std::string& name) {
-  struct Data {
-    Neighbourhood<S> anchor = as<S>(test::nine_dots());
-    Neighbourhood<S> now = as<S>(test::nine_dots());
-    Rotation<S> before = rotation_of(Angles<S>{S(0.1), S(-0.2), S(0.3)});
-    Angles<S> angles;
-  };
-  const bench::Memory memory;
-  const auto d = std::make_shared<Data>();
-  const auto turn = rotation_of(Angles<S>{S(-0.2), S(0.1), S(0.05)});
-  for (auto& p : d->now.dot) {
-    p = turn(p);
-  }
-  bench::add(
-      "rotation update/" + name, 1, memory.bytes(),
-      [d] {
-        benchmark::DoNotOptimize(d->now.dot.data());
-        d->angles = zyx_angles(Local::turn(d->anchor, d->now).rotation * d->before);
-      },
-      [](auto& counters) { note_turns<Local, S>(counters); });
-}
-
-/// The SVD of which the least-squares rotation would be made in OpenCV.
-void add_opencv_rotation() {
-  struct Data {
-    cv::Matx33d spread{5, 1, 0.1, -1, 6, 0.2, 0.3, 0.1, 0.4}, u, vt;
-    cv::Matx31d w;
-  };
-  const bench::Memory memory;
-  const auto d = std::make_shared<Data>();
-  bench::add(
-      "rotation update/cv::SVD of 3x3", 1, memory.bytes(),
-      [d] {
-        cv::SVD::compute(d->spread, d->w, d->u, d->vt);
-        benchmark::DoNotOptimize(d->u.val);
-      },
-      [](auto&) {});
 }
 
 /// A roll of 30 mm along a circle, in 300 frames.
@@ -163,14 +71,15 @@ struct RollErrors {
   std::vector<double> attitude_deg, place_mm;
 };
 
-template <class Way, class S>
-RollErrors roll_errors(const ObjectMotion<Way, S>& motion) {
+/// `make` makes the method from the dots of the free pad.
+template <class Make>
+RollErrors roll_errors(const Make& make) {
   RollErrors errors;
   const Point3<double> touched{5, 0, 10};  // first contact point of the ball
   for (const Roll& roll : rolls()) {
-    auto state = motion.start();
+    auto motion = make(roll.initial);
     for (std::size_t k = 0; k < roll.dots.size(); ++k) {
-      const auto r = motion(roll.dots[k], roll.contact[k], state);
+      const auto r = motion(roll.dots[k], roll.contact[k]);
       if (!r.ok()) {
         errors.attitude_deg.push_back(std::nan(""));
         errors.place_mm.push_back(std::nan(""));
@@ -188,32 +97,28 @@ RollErrors roll_errors(const ObjectMotion<Way, S>& motion) {
   return errors;
 }
 
-template <class Way, class S = double>
-void add_frame(const std::string& name, double margin_mm = 0, Way way = {}) {
+template <class Make>
+void add_frame(const std::string& name, const Make& make) {
+  const Roll& roll = rolls().front();
   struct Running {
-    ObjectMotion<Way, S> motion;
-    typename ObjectMotion<Way, S>::State state = motion.start();
+    decltype(make(roll.initial)) fresh, motion;
     std::size_t k = 0;
   };
-  const Roll& roll = rolls().front();
   const bench::Memory memory;
-  const auto d = std::make_shared<Running>(
-      Running{ObjectMotion<Way, S>(roll.initial, {.reference_margin_mm = S(margin_mm)}, way)});
+  const auto d = std::make_shared<Running>(Running{make(roll.initial), make(roll.initial)});
   bench::add(
       "frame of 21x21 dots/" + name, 1, memory.bytes(),
       [d, &roll] {
         if (d->k == roll.dots.size()) {
           d->k = 0;
-          d->state = d->motion.start();
+          d->motion = d->fresh;
         }
-        benchmark::DoNotOptimize(d->motion(roll.dots[d->k], roll.contact[d->k], d->state));
+        benchmark::DoNotOptimize(d->motion(roll.dots[d->k], roll.contact[d->k]));
         ++d->k;
       },
       [=, errors = RollErrors()](auto& counters) mutable {
-        errors = errors.place_mm.empty() ? roll_errors(d->motion) : errors;
-        bench::note_motion_on_scene(counters, [=](const auto& free) {
-          return ObjectMotion<Way, S>(free, {.reference_margin_mm = S(margin_mm)}, way);
-        });
+        errors = errors.place_mm.empty() ? roll_errors(make) : errors;
+        bench::note_motion_on_scene(counters, make);
         bench::note_errors(counters, "attitude", "deg", errors.attitude_deg);
         bench::note_errors(counters, "place", "mm", errors.place_mm);
       });
@@ -289,18 +194,12 @@ void add_spatial_dots(const std::string& name) {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  add_rotation<PublishedBasis, double>("published: PublishedBasis, double");
-  add_rotation<PublishedBasis, float>("published: PublishedBasis, float");
-  add_rotation<SymmetricFrame, double>("SymmetricFrame, double, the default");
-  add_rotation<SymmetricFrame, float>("SymmetricFrame, float");
-  add_opencv_rotation();
-  add_frame<SumOfAngles<>>("published: SumOfAngles<PublishedBasis>");
-  add_frame<SumOfAngles<SymmetricFrame>>("SumOfAngles<SymmetricFrame>");
-  add_frame<AnchoredComposition>("AnchoredComposition");
-  add_frame<AnchoredComposition>("the same, reference kept within 0.2 mm", 0.2);
-  add_frame<ContactMap>("ContactMap, double, the default");
-  add_frame<ContactMap>("ContactMap, no robust pass", 0, {.robust_passes = 0});
-  add_frame<ContactMap, float>("ContactMap, float");
+  add_frame("published: ObjectMotion",
+            [](const test::Dots& free) { return published::ObjectMotion(free); });
+  add_frame("ObjectMotion, double, the default",
+            [](const test::Dots& free) { return ObjectMotion<>(free.rows(), free.cols()); });
+  add_frame("ObjectMotion, float",
+            [](const test::Dots& free) { return ObjectMotion<float>(free.rows(), free.cols()); });
   add_opencv_frame();
   bench::add_streaming("frame of 21x21 dots");
   add_spatial_dots<double>("double");

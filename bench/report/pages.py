@@ -65,7 +65,7 @@ COMPARED = [
      "clamped mean, float, through a camera, the default"),
     ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap"),
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
-     "published: SumOfAngles<PublishedBasis>", "ContactMap, double, the default"),
+     "published: ObjectMotion", "ObjectMotion, double, the default"),
     ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published policies, float",
      "StickConsensus, ResidualMean, float, the default"),
     ("force along the pad", "wrench", "36x30 segments", "published: iteration, rim, lines",

@@ -14,6 +14,7 @@
 
 #include "bench/support/run.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
 #include "scene_frames.hpp"
 #include "support/stick_scene.hpp"
 
@@ -141,10 +142,9 @@ SceneMotionErrors motion_on_scene(const std::string& scene, const Make& make, st
   SceneMotionErrors errors;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const SceneMotion& recording = scene_motion(scene, seed);
-    const auto motion = make(recording.initial_mm);
-    auto state = motion.start();
+    auto motion = make(recording.initial_mm);
     for (const SceneMotionFrame& frame : recording.frames) {
-      const auto r = motion(frame.dots_mm, frame.contact, state);
+      const auto r = motion(frame.dots_mm, frame.contact);
       if (r.begun) {
         continue;
       }

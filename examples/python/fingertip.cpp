@@ -118,14 +118,12 @@ py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
 void bind_motion_result(py::module_& module) {
   using Motion = fingerpad::ObjectMotionResult<double>;
   py::class_<Motion>(module, "ObjectMotionResult",
-                     "Motion of the object; see motion/motion_result.hpp.")
+                     "Motion of the object; see motion/object_motion.hpp.")
       .def_property_readonly("ok", &Motion::ok)
       .def_property_readonly("status", [](const Motion& r) { return name_of(r.status); })
-      .def_property_readonly(
-          "reference",
-          [](const Motion& r) { return py::make_tuple(r.reference.row, r.reference.col); },
-          "row and column of the contact reference dot; -1: there is none")
-      .def_readonly("reference_changed", &Motion::reference_changed)
+      .def_property_readonly("has_pose", &Motion::has_pose)
+      .def_readonly("object", &Motion::object,
+                    "1 for the first object, one more with each that begins; 0: none yet")
       .def_readonly("begun", &Motion::begun)
       .def_readonly("dots_used", &Motion::dots_used)
       .def_property_readonly(

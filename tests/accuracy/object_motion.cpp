@@ -54,14 +54,13 @@ PoseErrors errors_of(const std::string& name,
   const Index n = scene.dots_across();
   const double along = noise * 0.005, deep = noise * 0.025;
   const SpatialStickRatio<double> ratio(n, n, {.lateral_mm = along, .depth_mm = deep});
-  const ObjectMotion<> motion(test::DotsMm(n, n, {0, 0, 0}));
   PoseErrors e;
   double told = 0, frames = 0, held = 0, told_sticking = 0, sticking = 0;
   for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
     test::Random random(seed);
     auto stick_state = ratio.start();
     FrictionLimit<double> limit;
-    auto state = motion.start();
+    ObjectMotion<> motion(n, n);
     test::Image<DotState> states(n, n);
     test::Image<std::uint8_t> slips(n, n);
     Pose<double> began;
@@ -84,7 +83,7 @@ PoseErrors errors_of(const std::string& name,
       for (std::size_t at = 0; knows_slip && at < states.cells.size(); ++at) {
         slips.cells[at] = slip.holds(states.cells[at]) ? 0 : 1;
       }
-      const auto r = motion(dots, scene[k].contact, slips, state);
+      const auto r = motion(dots, scene[k].contact, slips);
       const bool touches = scene[k].contact_area_mm2 > 0;
       const bool sticks = touches && scene[k].stick_ratio >= 0.2;
       frames += touches ? 1 : 0;

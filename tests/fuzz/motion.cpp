@@ -6,6 +6,7 @@
 
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
+#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "fuzz/dots.hpp"
 
@@ -35,6 +36,28 @@ void try_shift(Input& in) {
     require(!r.has_displacement() || is_finite(r.displacement), "a displacement is finite");
     require(!r.ok() || (std::abs(r.rotation_rad) <= 3.1416 && r.residual_rms >= 0),
             "a rotation is within half a turn");
+  }
+}
+
+void try_motion(Input& in) {
+  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
+  const auto free = any_dots<Point3<double>>(in, rows, cols);
+  ObjectMotion<> motion(rows, cols);
+  Index object = 0;
+  for (Index frames = in.whole(1, 6); frames > 0; --frames) {
+    const auto dots = fuzz::moved_dots(in, free);
+    const auto contact = any_contact(in, rows, cols), slips = any_contact(in, rows, cols);
+    auto copy = motion;
+    const double noise_mm = in.number(0, 0.1);
+    const auto seen =
+        fuzz::frame([&] { return motion(dots.view(), contact.view(), slips.view(), noise_mm); });
+    const auto same = copy(dots.view(), contact.view(), slips.view(), noise_mm);
+    require(seen.status == same.status &&
+                fuzz::same_bits(seen.pose.translation_mm, same.pose.translation_mm),
+            "a copy gives the same bits");
+    require(!seen.has_pose() || is_finite(seen.pose.translation_mm), "a translation is finite");
+    require(seen.object == object + (seen.begun ? 1 : 0), "each object has the next number");
+    object = seen.object;
   }
 }
 
@@ -72,7 +95,7 @@ void try_surface(Input& in) {
   const auto contact = any_contact(in, rows, cols);
   const auto r = fuzz::frame([&] { return fit_surface(camera, depth.view(), contact.view()); });
   const auto again = fit_surface(camera, depth.view(), contact.view());
-  require(r.status == again.status && fuzz::same_bits(r.rms_mm, again.rms_mm),
+  require(r.ok() == again.ok() && fuzz::same_bits(r.rms_mm, again.rms_mm),
           "the same frame gives the same bits");
   require(!r.ok() || (is_finite(r.rms_mm) && r.rms_mm >= 0), "the residual is finite");
 }
@@ -81,7 +104,7 @@ void try_surface(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    switch (in.whole(0, 4)) {
+    switch (in.whole(0, 5)) {
       case 0:
         return try_shift<EdgeDots, PlainMean>(in);
       case 1:
@@ -90,6 +113,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return try_shift<ContactDots, HuberMean>(in);
       case 3:
         return try_surface(in);
+      case 4:
+        return try_motion(in);
       default:
         return try_recoil(in);
     }

@@ -37,8 +37,6 @@ const std::vector<Bounds> surface = {
     {hard::center_pixel, none, none, 1e-5, 2e-14},
 };
 const std::vector<Bounds> motion = {
-    {hard::collinear_dots, none, none, 1e-5, 1e-14},
-    {hard::sheared_dots, 5, 5, 1e-4, 2e-13},
     {hard::gimbal_lock, none, none, 8e-6, 1e-14},
     {hard::small_angle, 5e-5, 1e-9, 3e-7, 6e-16},
 };

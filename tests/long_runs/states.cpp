@@ -247,22 +247,20 @@ TEST_CASE("long runs: after a reset a stick ratio in space is that of a start", 
 
 TEST_CASE("long runs: after lost contact an object's motion begins anew", "[long_run]") {
   Any any;
-  const ObjectMotion<> motion(dots_in_space(any, 0));
-  auto state = motion.start(), fresh = motion.start();
+  ObjectMotion<> motion(6, 6), fresh(6, 6);
   const test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
   double shift_mm = 0;
   bool sound = true;
   for (long k = 0; k < frames(); ++k) {
     shift_mm = any.once_in(100) ? 0 : shift_mm + any.number(-0.05, 0.06);
-    const auto r = motion(dots_in_space(any, shift_mm), any.once_in(60) ? none : contact, state);
+    const auto r = motion(dots_in_space(any, shift_mm), any.once_in(60) ? none : contact);
     sound = sound && (!r.ok() || is_finite(r.pose.translation_mm));
   }
   CHECK(sound);
-  (void)motion(dots_in_space(any, 0), none, state);
-  CHECK_FALSE(state.has_object());
+  CHECK(motion(dots_in_space(any, 0), none).status == MotionStatus::no_contact);
   for (int k = 0; k < 20; ++k) {
     const auto dots = dots_in_space(any, 0.1 * k);
-    const auto a = motion(dots, contact, state), b = motion(dots, contact, fresh);
+    const auto a = motion(dots, contact), b = fresh(dots, contact);
     CHECK(a.status == b.status);
     CHECK(a.pose.translation_mm.x == b.pose.translation_mm.x);
     CHECK(a.pose.translation_mm.z == b.pose.translation_mm.z);

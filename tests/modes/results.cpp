@@ -127,8 +127,7 @@ void tell_dots(Results& tell) {
     touch[k] = std::hypot(free[k].x, free[k].y) < 4 ? 1 : 0;
   }
   const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
-  static const ObjectMotion<> motion(view(free));
-  auto motion_state = motion.start();
+  ObjectMotion<> motion(9, 9);
   static const ContactShift<> shift(view(free));
   auto shift_work = shift.workspace();
   static const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
@@ -138,7 +137,7 @@ void tell_dots(Results& tell) {
   std::vector<DotState> states(81);
   for (int frame = 0; frame < 8; ++frame) {
     auto now = dots_moved<Point>(0.1 * frame, 0.02 * frame);
-    const auto moved = motion(view(now), contact, motion_state);
+    const auto moved = motion(view(now), contact);
     const auto shifted = shift(view(now), contact, shift_work);
     const auto ratio =
         stick(view(now), contact, StridedView<DotState>(states.data(), 9, 9, 9), stick_state);

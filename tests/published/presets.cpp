@@ -8,53 +8,13 @@
 
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/object_motion.hpp"
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
 #include "fingerpad/published/wrench.hpp"
 #include "support/catch.hpp"
-#include "support/image.hpp"
 #include "support/numbers.hpp"
 
 using namespace fingerpad;
-using test::Image;
-
-TEST_CASE("published object motion: Euler angles of steps are added up", "[published]") {
-  // a patch of dots rotated about z and then about x: the sum differs from the rotation
-  const auto motion = published::object_motion([] {
-    Image<Point3<double>> dots(7, 7);
-    for (Index i = 0; i < 7; ++i) {
-      for (Index j = 0; j < 7; ++j) {
-        dots(i, j) = {2.0 * static_cast<double>(j - 3), 2.0 * static_cast<double>(i - 3), 10};
-      }
-    }
-    return dots;
-  }());
-  auto state = motion.start();
-  const Image<unsigned char> all(7, 7, 1);
-  Image<Point3<double>> dots(7, 7);
-  const double angle = 0.2;
-  const auto frame = [&](double about_x, double about_z) {
-    const double cx = std::cos(about_x), sx = std::sin(about_x);
-    const double cz = std::cos(about_z), sz = std::sin(about_z);
-    for (Index i = 0; i < 7; ++i) {
-      for (Index j = 0; j < 7; ++j) {
-        const double x = 2.0 * static_cast<double>(j - 3), y = 2.0 * static_cast<double>(i - 3);
-        const double y1 = sz * x + cz * y;  // first about z, then about x
-        dots(i, j) = {cz * x - sz * y, cx * y1, 10 + sx * y1};
-      }
-    }
-    return motion(dots, all, state);
-  };
-  REQUIRE(frame(0, 0).ok());
-  REQUIRE(frame(0, angle).ok());
-  const auto last = frame(angle, angle);
-  REQUIRE(last.ok());
-  // the exact composition has -0.04 about y
-  CHECK(last.angles.x_rad == Approx(angle).epsilon(1e-6));
-  CHECK(last.angles.y_rad == Approx(0).margin(1e-6));
-  CHECK(last.angles.z_rad == Approx(angle).epsilon(1e-6));
-}
 
 TEST_CASE("published normal force: the printed curves", "[published]") {
   const auto by_area = published::normal_force_by_area();

@@ -139,7 +139,7 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   CHECK(line ==
         "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
         "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
-        "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
+        "object,motion_status,object_x_mm,object_y_mm,object_z_mm,"
         "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
         "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
         "shift_x_mm,shift_y_mm,shift_rad,"
@@ -150,7 +150,7 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
   // the free pad: without contact it has no position and no object
-  CHECK(line.find(",0.000000,,,,,,,,,,,") != std::string::npos);
+  CHECK(line.find(",0.000000,,,,0,no contact,,,,,,,") != std::string::npos);
   CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 3) == "1,,");

@@ -11,7 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/math/rigid_fit.hpp"
+#include "fingerpad/math/rotation.hpp"
 #include "image.hpp"
 
 namespace test {
@@ -32,18 +33,6 @@ class Gauss {
 
 using Dots = Image<fingerpad::Point3<double>>;
 using Flags = Image<unsigned char>;
-
-/// Nine dots 1.5 mm apart on a ball of 18 mm.
-inline fingerpad::detail::motion::Neighbourhood<double> nine_dots() {
-  fingerpad::detail::motion::Neighbourhood<double> n;
-  for (std::size_t k = 0; k < 9; ++k) {
-    const double x = 1.5 * static_cast<double>(k % 3) - 1.5;
-    const double y = 1.5 * static_cast<double>(k / 3) - 1.5;
-    n.dot[k] = {x, y, 10 + (x * x + y * y) / 36};
-    n.found[k] = true;
-  }
-  return n;
-}
 
 /// The rotation by the vector `turn` (axis times angle).
 inline fingerpad::Rotation<double> turned_by(const fingerpad::Point3<double>& turn) {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Effects on the pose of the object. A rigid object carries dots 1.5 mm apart; noise of 0.02 mm in
-// the plane and 0.05 mm in depth; 60 frames, 150 for a roll; the contact reference dot is kept
-// within 0.2 mm. A patch of 5 mm around the middle touches:
+// the plane and 0.05 mm in depth; 60 frames, 150 for a roll.
+// A patch of 5 mm around the middle touches:
 //   press                carried 2 mm deeper
 //   drag                 dragged by 3 mm, while the patch slips from its edge to 3.8 mm
 //   reversal             the same, and back
@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "support/rolling.hpp"
 #include "table.hpp"
@@ -194,12 +195,12 @@ struct PoseErrors {
 };
 
 template <class Motion>
-PoseErrors pose_errors(const Motion& motion, const MotionRecordings& of) {
+PoseErrors pose_errors(const Motion& fresh, const MotionRecordings& of) {
   PoseErrors errors;
   for (const MotionRecording& recording : of.recordings) {
-    auto state = motion.start();
+    auto motion = fresh;
     for (const MotionFrame& frame : recording) {
-      const auto r = motion(frame.dots, frame.contact, state);
+      const auto r = motion(frame.dots, frame.contact);
       if (r.begun) {
         continue;
       }
@@ -220,18 +221,13 @@ class MotionEffects {
   void add(const std::string& name,
            const std::string& on,
            const std::string& off,
-           const With& way_with,
-           const Without& way_without) {
-    const auto initial = test::RollingBall().initial();
-    const fingerpad::ObjectMotionOptions<double> options{.reference_margin_mm = 0.2};
-    const fingerpad::ObjectMotion<With> with(initial, options, way_with);
-    const fingerpad::ObjectMotion<Without> without(initial, options, way_without);
+           const With& with,
+           const Without& without) {
     Effect row{.name = name, .unit = "degrees", .on = on, .off = off};
     const MotionRecording& twist = noisy_[3].recordings.front();
-    const auto run = [&](const auto& motion) {
-      auto state = motion.start();
+    const auto run = [&](auto motion) {
       for (const auto& frame : twist) {
-        (void)motion(frame.dots, frame.contact, state);
+        (void)motion(frame.dots, frame.contact);
       }
     };
     row.cost_us =
@@ -265,20 +261,10 @@ class MotionEffects {
 
 inline std::vector<Effect> motion_effects() {
   using namespace fingerpad;
-  using published::AnchoredComposition;
-  using published::PublishedBasis;
-  using published::SumOfAngles;
-  using published::SymmetricFrame;
   MotionEffects all;
-  all.add("exact composition", "`AnchoredComposition`", "`SumOfAngles<SymmetricFrame>`",
-          AnchoredComposition(), SumOfAngles<SymmetricFrame>());
-  all.add("shear of a neighbourhood", "`SumOfAngles<SymmetricFrame>`",
-          "`SumOfAngles<PublishedBasis>`", SumOfAngles<SymmetricFrame>(),
-          SumOfAngles<PublishedBasis>());
-  all.add("map of all dots", "`ContactMap`", "`AnchoredComposition`", ContactMap(),
-          AnchoredComposition());
-  all.add("robust pass", "`ContactMap`", "`ContactMap{.robust_passes = 0}`", ContactMap(),
-          ContactMap{.robust_passes = 0});
+  const auto initial = test::RollingBall().initial();
+  all.add("map of all dots, rotations composed", "`ObjectMotion`", "`published::ObjectMotion`",
+          ObjectMotion<>(initial.rows(), initial.cols()), published::ObjectMotion(initial));
   return all.effects;
 }
 

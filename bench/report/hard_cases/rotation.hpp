@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/published/object_motion.hpp"
+#include "fingerpad/math/rotation.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
@@ -18,7 +18,6 @@ namespace hard {
 using fingerpad::Angles;
 using fingerpad::Point3;
 using fingerpad::Rotation;
-using fingerpad::detail::motion::Neighbourhood;
 
 /// Angles in the slides' order: y by asin first.
 template <class S>
@@ -81,94 +80,6 @@ inline Row small_angle() {
         }
         return f;
       });
-}
-
-/// Nine dots with a spacing of 1.5 mm in the first direction and `across` times that in the second.
-template <class S>
-Neighbourhood<S> dots(const Rotation<double>& turn, double shear, double across = 1) {
-  Neighbourhood<S> n;
-  for (std::size_t k = 0; k < 9; ++k) {
-    const double u = static_cast<double>(k % 3) - 1, v = across * (static_cast<double>(k / 3) - 1);
-    const Point3<double> p = {1.5 * (u + shear / 2 * v), 1.5 * (v + shear / 2 * u), 0};
-    const auto q = turn(p);
-    n.dot[k] = {S(q.x + 3), S(q.y - 2), S(q.z + 10)};
-    n.found[k] = true;
-  }
-  return n;
-}
-
-inline Row sheared_dots() {
-  return row("rotation", "dots sheared by 0.02 to 0.2 while they turn; worst angle, degrees",
-             "symmetric orthonormal frame of both directions", []<class S>(S) {
-               Forms f;
-               const Angles<double> truth{0.35, -0.2, 0.5};
-               for (const double shear : {0.02, 0.05, 0.1, 0.2}) {
-                 const auto from = dots<S>(Rotation<double>(), 0);
-                 const auto to = dots<S>(fingerpad::rotation_of(truth), shear);
-                 const auto add = [&](Tally& tally,
-                                      const fingerpad::detail::motion::LocalRotation<S>& turn) {
-                   const auto a = fingerpad::zyx_angles(turn.rotation);
-                   const Digits50 degree(std::numbers::pi / 180);
-                   tally.add(a.x_rad, Digits50(truth.x_rad), degree);
-                   tally.add(a.y_rad, Digits50(truth.y_rad), degree);
-                   tally.add(a.z_rad, Digits50(truth.z_rad), degree);
-                 };
-                 add(f.naive, fingerpad::published::PublishedBasis::turn(from, to));
-                 add(f.stable, fingerpad::published::SymmetricFrame::turn(from, to));
-               }
-               return f;
-             });
-}
-
-/// Eqs. 14-18 as printed, without a check that there are two directions.
-template <class S>
-Rotation<S> published_turn(const Neighbourhood<S>& from, const Neighbourhood<S>& to) {
-  namespace d = fingerpad::detail;
-  const auto basis = [](const Neighbourhood<S>& n) {
-    const auto q = d::motion::directions_of_all(n.dot);
-    const auto n1 = normalized(q.q1), n2 = normalized(q.q2);
-    return d::motion::Basis<S>{n1, n2, cross(n1, n2), true};
-  };
-  return d::motion::turn_between(d::motion::inverse_transposed(basis(from)), basis(to));
-}
-
-inline Row collinear_dots() {
-  return row("rotation", "dots nearly on a line, 1e-12 to 1 of the pitch across; elements",
-             "spread across below a tenth: status collinear", []<class S>(S) {
-               Forms f;
-               const auto truth = fingerpad::rotation_of(Angles<double>{0.35, -0.2, 0.5});
-               std::vector<double> spreads = sweep(1e-12, 1, 4);
-               spreads.push_back(0);
-               for (const double across : spreads) {
-                 // a line of dots: both directions of the grid are parallel to it
-                 Neighbourhood<S> from, to;
-                 for (std::size_t k = 0; k < 9; ++k) {
-                   const double u = static_cast<double>(k % 3) - 1;
-                   const double v = static_cast<double>(k / 3) - 1;
-                   const Point3<double> p = {1.5 * u + 0.5 * v, 1.5 * across * v, 0};
-                   const auto q = truth(p);
-                   from.dot[k] = {S(p.x + 3), S(p.y - 2), S(10)};
-                   to.dot[k] = {S(q.x + 3), S(q.y - 2), S(q.z + 10)};
-                   from.found[k] = to.found[k] = true;
-                 }
-                 const auto add = [&](Tally& tally, const Rotation<S>& r) {
-                   S worst = S(0);
-                   for (int i = 0; i < 9; ++i) {
-                     const S off = std::abs(r.m[i / 3][i % 3] - S(truth.m[i / 3][i % 3]));
-                     worst = off <= worst ? worst : off;
-                   }
-                   tally.add_absolute(worst, Digits50(0));
-                 };
-                 add(f.naive, published_turn(from, to));
-                 const auto turn = fingerpad::published::SymmetricFrame::turn(from, to);
-                 if (turn.status == fingerpad::MotionStatus::ok) {
-                   add(f.stable, turn.rotation);
-                 } else {
-                   f.stable.answer_none(true);
-                 }
-               }
-               return f;
-             });
 }
 
 }  // namespace hard

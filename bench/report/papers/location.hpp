@@ -14,8 +14,10 @@ namespace bench::papers {
 inline Section location_section() {
   using namespace fingerpad;
   constexpr std::uint64_t seeds = 4;
-  const auto printed = [](const SpatialDots& free) { return published::object_motion(free); };
-  const auto by_default = [](const SpatialDots& free) { return ObjectMotion<>(free); };
+  const auto printed = [](const SpatialDots& free) { return published::ObjectMotion(free); };
+  const auto by_default = [](const SpatialDots& free) {
+    return ObjectMotion<>(free.rows(), free.cols());
+  };
   const auto old_drag = motion_on_scene("drag", printed, seeds);
   const auto drag = motion_on_scene("drag", by_default, seeds);
   const auto old_roll = motion_on_scene("roll", printed, seeds);

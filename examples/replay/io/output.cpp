@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* columns =
     "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
     "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
-    "reference_dot_row,reference_dot_col,object_x_mm,object_y_mm,object_z_mm,"
+    "object,motion_status,object_x_mm,object_y_mm,object_z_mm,"
     "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
     "shift_x_mm,shift_y_mm,shift_rad,"
@@ -212,14 +212,14 @@ void FramesCsv::write(const FrameRow& row) {
           << cell_of(contact.ok() ? contact.area_mm2 : none) << ',' << cell_of(contact.depth_mm)
           << ',' << cell_of(contact.center_mm.x) << ',' << cell_of(contact.center_mm.y);
   const auto& motion = row.motion;
-  if (motion.reference.exists()) {
-    stream_ << ',' << motion.reference.row << ',' << motion.reference.col;
+  if (row.has_dots) {
+    stream_ << ',' << motion.object << ',' << name_of(motion.status);
   } else {
     stream_ << ",,";
   }
   for (const double value : {motion.position_mm.x, motion.position_mm.y, motion.position_mm.z,
                              motion.angles.x_rad, motion.angles.y_rad, motion.angles.z_rad}) {
-    stream_ << ',' << cell_of(motion.ok() ? value : none);
+    stream_ << ',' << cell_of(motion.has_pose() ? value : none);
   }
   const auto& stick = row.stick;
   if (row.has_dots) {

@@ -31,7 +31,7 @@ std::string words_of_motion(const FrameDots& dots) {
     return "no dots";
   }
   const auto& motion = dots.motion;
-  if (!motion.ok()) {
+  if (!motion.has_pose()) {
     return std::string("object: ") + name_of(motion.status);
   }
   const auto& moved = motion.displacement_mm;
@@ -73,9 +73,6 @@ void paint_dots(Canvas& canvas,
                     in_contact ? held : loose);
       }
       canvas.circle(at, 2.4, in_contact ? 2.4 : 0.8, in_contact ? held : loose);
-      if (dots.motion.reference == fingerpad::DotIndex{i, j}) {
-        canvas.circle(at, 7, 1.8, ink::accent);
-      }
     }
   }
 }

@@ -17,12 +17,12 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows) {
   const auto moved = [](double fingerpad::Point3<double>::*axis) {
     return [axis](const FrameRow& row) {
-      return row.motion.ok() ? row.motion.displacement_mm.*axis : none;
+      return row.motion.has_pose() ? row.motion.displacement_mm.*axis : none;
     };
   };
   const auto rotated = [](double fingerpad::Angles<double>::*axis) {
     return [axis](const FrameRow& row) {
-      return row.motion.ok() ? row.motion.angles.*axis / degree : none;
+      return row.motion.has_pose() ? row.motion.angles.*axis / degree : none;
     };
   };
   using Point = fingerpad::Point3<double>;

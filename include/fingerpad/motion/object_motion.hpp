@@ -3,199 +3,285 @@
 #pragma once
 // Motion of an object in contact, from the dots of the membrane in space. Source: Ito, Kim, Nagai,
 // Obinata, "Acquisition of tactile information by vision-based tactile sensor for dexterous
-// handling of robot hands", III.C, eqs. 13-19; published and corrected forms in docs/errata.md,
-// E019-E024.
+// handling of robot hands", III.C; as printed in published/object_motion.hpp, docs/errata.md,
+// E021-E024.
 //
-// While nothing slips, the dots in contact move with the object. The published method follows the
-// one that has moved furthest, with its eight neighbours; the default uses all of them. Dots in
-// space come from spatial_dots(), contact flags from contact_at_dots() (motion/spatial_dots.hpp).
-// Dots cannot show that an object slides as a whole, or that it is exchanged for another.
-#include <concepts>
+// While nothing slips, the dots in contact move with the object. A map holds their places on it, as
+// they were when the object began. In each frame, the pose is the rigid motion that best fits the
+// map to the dots. Then dots new in contact are entered with that pose, those that stay refine
+// their entry as a running mean, and those that have left are removed. A patch of fifty dots has a
+// tenth of the tilt noise of nine, and its memory is lost only when the contact has rolled over its
+// whole width. Dots cannot show that an object slides as a whole, or that it is exchanged for
+// another.
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
-#include <utility>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/motion/contact_map.hpp"
-#include "fingerpad/motion/detail/dot_frame.hpp"
-#include "fingerpad/motion/motion_result.hpp"
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/math/rigid_fit.hpp"
+#include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
+enum class MotionStatus : std::uint8_t {
+  ok,
+  doubtful,  ///< a pose, but its residual exceeds the noise of the dots by 1.4: a soft object, dots
+             ///< beside it, or slip that nobody has told
+  no_contact,  ///< dots were found, but none is in contact: the object is gone
+  /// The pose is not known: fewer than three known dots in contact (nine to begin an object), dots
+  /// on a line or not in mm, a residual beyond a quarter of the pitch, or a grid of another size.
+  no_pose,
+  slipping,  ///< fewer than a fifth of the dots in contact stick, or no more than half since then
+};
+inline constexpr std::array<const char*, 5> motion_status_names = {"ok", "doubtful", "no contact",
+                                                                   "no pose", "slipping"};
+/// "ok", "doubtful", ...
+constexpr const char* name_of(MotionStatus status) {
+  return motion_status_names[static_cast<std::size_t>(status)];
+}
+
+/// Motion of the object in a frame. Without a pose, dots_used is 0, and all else is what was last
+/// known of the object; before the first one, position is NaN.
 template <scalar S = double>
-struct ObjectMotionOptions {
-  /// The contact reference dot is kept until another dot has moved further than it by more than
-  /// this, mm, >= 0. 0 as published; noise may then make it flicker between neighbours.
-  S reference_margin_mm = S(0);
+struct [[nodiscard]] ObjectMotionResult {
+  MotionStatus status = MotionStatus::no_pose;
+  Index object = 0;  ///< which object: 1 for the first, one more with each that begins; 0: none yet
+  bool begun = false;      ///< it begins with this frame: the pose is the identity
+  Index dots_used = 0;     ///< dots from which the pose was computed
+  Pose<S> pose = {};       ///< x_now = R x_first + t, from the frame in which the object began
+  Angles<S> angles = {};   ///< of the pose, about z, y and x
+  Point3<S> position_mm =  ///< of the object's point that lay at the centroid of its first dots
+      {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
+  Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
+  S residual_rms_mm = S(0);  ///< rms distance of the dots used from the rigid motion
+
+  bool has_pose() const { return status == MotionStatus::ok || status == MotionStatus::doubtful; }
+  bool ok() const { return status == MotionStatus::ok; }
 };
 
-/// Pose of the object in contact, frame by frame.
-///   Way   ContactMap  all dots that stick, with the least noise
-/// The printed forms are ways too: published/object_motion.hpp. Threads may share one estimator,
-/// each with its own state. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
+/// Pose of the object in contact, frame by frame. The object is the state: copy it to return to a
+/// frame. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
 ///
-/// An object begins with the first frame with enough contact, and ends when no dot is in contact;
-/// the next contact is a new object. A frame with contact but without a pose keeps the last pose
-/// and gives the reason as its status. The object is found again as soon as enough of the known
-/// dots are back in contact.
-template <class Way = ContactMap, scalar S = double>
+/// An object begins with nine dots in contact, and ends when no dot is in contact or when it
+/// slides; what is touched then is a new object with the next number. A frame with contact but
+/// without a pose keeps the last one; the object is found again as soon as three of its dots are
+/// back.
+template <scalar S = double>
 class ObjectMotion {
-  static_assert(!scalar<Way>, "the scalar comes last: ObjectMotion<ContactMap, double>");
-
  public:
-  /// A value: copy it to return to this frame later.
-  class State {
-   public:
-    bool has_object() const { return has_object_; }
-
-   private:
-    friend class ObjectMotion;
-    explicit State(typename Way::template Track<S> track, Index rows, Index cols)
-        : track_(std::move(track)), rows_(rows), cols_(cols) {}
-
-    typename Way::template Track<S> track_;
-    DotIndex reference_ = {};
-    bool has_object_ = false;
-    bool has_slid_ = false;  // and no object has begun since
-    Index rows_;
-    Index cols_;
-  };
-
-  /// `initial_mm` are the dots of the free pad; a missing one is never the reference dot. Refuses
-  /// bad parameters, and dots that are probably not in mm (parameter_error).
-  template <spatial_dot_grid Dots>
-  explicit ObjectMotion(const Dots& initial_mm,
-                        const ObjectMotionOptions<S>& options = {},
-                        const Way& way = {})
-      : options_(options), way_(way) {
-    expects(is_finite(options.reference_margin_mm) && value(options.reference_margin_mm) >= 0,
-            "ObjectMotion", "reference_margin_mm", options.reference_margin_mm, "finite and >= 0");
-    const auto from = as_view(initial_mm);
-    initial_.rows = from.rows();
-    initial_.cols = from.cols();
-    expects_grid_size("ObjectMotion", rows(), cols(), 0);
-    for (Index i = 0; i < initial_.rows; ++i) {
-      for (Index j = 0; j < initial_.cols; ++j) {
-        initial_.dots.push_back(detail::motion::spatial<S>(cell_t<Dots>(from(i, j))));
-      }
-    }
-    detail::motion::expects_in_mm(initial_);
-    way_.template track<S>(0, 0);  // refuses bad parameters
+  /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
+  ObjectMotion(Index rows, Index cols) : rows_(rows), cols_(cols) {
+    expects_grid_size("ObjectMotion", rows, cols, 0);
+    map_.resize(static_cast<std::size_t>(rows * cols));
+    seen_.resize(map_.size());
   }
 
-  Index rows() const { return initial_.rows; }
-  Index cols() const { return initial_.cols; }
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
 
-  /// The state before any contact, with all the memory that frames will need.
-  State start() const { return State(way_.template track<S>(rows(), cols()), rows(), cols()); }
-
-  /// Processes a frame with the dots `dots_mm` (NaN: not found), of which those with a true
-  /// `contact` touch the object.
-  template <spatial_dot_grid Dots, contact_mask Contact>
-  ObjectMotionResult<S> operator()(const Dots& dots_mm,
-                                   const Contact& contact,
-                                   State& state) const {
-    const auto dots = as_view(dots_mm);
-    const auto flags = as_view(contact);
-    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
-        state.rows_ != rows() || state.cols_ != cols()) {
-      return {};
-    }
-    return follow(detail::motion::DotFrame<S, decltype(dots), decltype(flags)>(dots, flags), state);
-  }
-
-  /// The same if it is known which dots slip, for instance from the stick ratio. Slipping dots
-  /// would bias the pose, so they are left out, and entered again where they stick again. If fewer
-  /// than a fifth stick, the status is `slipping` and the pose is kept. A new object begins
-  /// afterwards, because it is not known how far the first one slid. It begins once more than half
-  /// stick: an object that stops sliding sticks with most of its contact at once, so a smaller part
-  /// that seems to stick is more likely carried along by a slide.
+  /// Processes a frame with the dots `dots_mm` (NaN, or not beyond the plate, z <= 0: not found),
+  /// of which those with a true `contact` touch the object and those with a true `slips` do not
+  /// stick to it, for instance by the stick ratio. Slipping dots are left out, and entered again
+  /// where they stick again. If fewer than a fifth stick, the status is `slipping`, and a new
+  /// object begins once more than half stick: it is not known how far the first one slid, and a
+  /// smaller part that seems to stick is more likely carried along by a slide. `depth_noise_mm` is
+  /// the standard deviation of a dot's depth, by far the largest of its errors; 0: the residual is
+  /// not judged by it.
   template <spatial_dot_grid Dots, contact_mask Contact, contact_mask Slips>
   ObjectMotionResult<S> operator()(const Dots& dots_mm,
                                    const Contact& contact,
                                    const Slips& slips,
-                                   State& state) const {
+                                   double depth_noise_mm = 0) {
     const auto dots = as_view(dots_mm);
     const auto flags = as_view(contact);
     const auto slipping = as_view(slips);
-    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
-        !same_size(dots, slipping) || state.rows_ != rows() || state.cols_ != cols()) {
-      return {};
+    last_.begun = false;
+    last_.dots_used = 0;
+    last_.status = MotionStatus::no_pose;
+    if (dots.rows() != rows_ || dots.cols() != cols_ || !same_size(dots, flags) ||
+        !same_size(dots, slipping)) {
+      return last_;
     }
-    using Frame = detail::motion::DotFrame<S, decltype(dots), decltype(flags)>;
-    const detail::motion::SteadyFrame<Frame, decltype(slipping)> frame(Frame(dots, flags),
-                                                                       slipping);
-    if (frame.slides() || (state.has_slid_ && !frame.holds_most())) {
-      ObjectMotionResult<S> result;
-      result.status = MotionStatus::slipping;
-      fill(state, result);
-      forget(state);
-      state.has_slid_ = true;
-      return result;
-    }
-    return follow(frame, state);
+    read(dots, flags, slipping);
+    last_.status = look(depth_noise_mm);
+    return last_;
+  }
+
+  /// The same if no dot slips.
+  template <spatial_dot_grid Dots, contact_mask Contact>
+  ObjectMotionResult<S> operator()(const Dots& dots_mm, const Contact& contact) {
+    return (*this)(dots_mm, contact, LazyView(rows_, cols_, [](Index, Index) { return false; }));
   }
 
  private:
-  template <class Frame>
-  ObjectMotionResult<S> follow(const Frame& frame, State& state) const {
-    ObjectMotionResult<S> result;
-    result.status = MotionStatus::no_contact;
-    if (!frame.any_flagged()) {
-      return without_contact(frame.any_found(), state, result);
-    }
-    result.reference = detail::motion::reference_dot(frame, initial_, state.reference_,
-                                                     options_.reference_margin_mm);
-    result.reference_changed = state.reference_.exists() && result.reference.exists() &&
-                               result.reference != state.reference_;
-    state.reference_ = result.reference.exists() ? result.reference : state.reference_;
-    if (state.has_object_) {
-      result.status = way_.advance(frame, result.reference, state.track_);
-    } else {
-      result.status = way_.begin(frame, result.reference, state.track_);
-      result.begun = state.has_object_ = result.ok();
-      state.has_slid_ = state.has_slid_ && !result.begun;
-    }
-    fill(state, result);
-    return result;
-  }
+  struct Entry {
+    Point3<S> place_mm = {S(0), S(0), S(0)};
+    S weight = S(0);    ///< of the mean; 0: not on the map
+    bool left = false;  ///< found in this frame, but it does not stick
+  };
+  struct Seen {
+    std::size_t cell = 0;  ///< index of its entry
+    Point3<S> dot_mm = {S(0), S(0), S(0)};
+  };
 
-  ObjectMotionResult<S> without_contact(bool any_found,
-                                        State& state,
-                                        ObjectMotionResult<S>& result) const {
-    if (any_found || !state.has_object_) {
-      forget(state);
-    }
-    state.has_slid_ = state.has_slid_ && !any_found;
-    result.status = any_found ? MotionStatus::no_contact : MotionStatus::no_dots;
-    fill(state, result);
-    return result;
-  }
-
-  /// Forgets the object but keeps the memory, because begin() writes whatever it reads.
-  static void forget(State& state) {
-    static_cast<detail::motion::Track<S>&>(state.track_) = {};
-    state.reference_ = {};
-    state.has_object_ = false;
-  }
-
-  static void fill(const State& state, ObjectMotionResult<S>& result) {
-    const auto& track = state.track_;
-    result.dots_used = result.ok() ? track.dots_used : 0;
-    result.pose = track.pose;
-    result.angles = track.angles;
-    result.residual_rms_mm = track.residual_rms_mm;
-    if (state.has_object_) {
-      result.position_mm = track.pose(track.start_mm);
-      result.displacement_mm = result.position_mm - track.start_mm;
+  /// Lists the dots that stick, and marks those that are found but do not; missing ones may still
+  /// be in contact.
+  template <class Dots, class Contact, class Slips>
+  void read(const Dots& dots, const Contact& contact, const Slips& slips) {
+    known_ = fresh_ = flagged_ = found_ = touching_ = 0;
+    std::size_t cell = 0;
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j, ++cell) {
+        const Point3<S> p = detail::spatial_dot<S>(cell_t<Dots>(dots(i, j)));
+        const bool found = S(0) < p.z;
+        const bool flagged = is_contact(cell_t<Contact>(contact(i, j)));
+        const bool sticks = found && flagged && !is_contact(cell_t<Slips>(slips(i, j)));
+        found_ += found ? 1 : 0;
+        flagged_ += flagged ? 1 : 0;
+        touching_ += found && flagged ? 1 : 0;
+        map_[cell].left = found && !sticks;
+        if (sticks) {
+          const bool known = S(0) < map_[cell].weight;
+          seen_[known ? known_++ : map_.size() - ++fresh_] = {cell, p};
+        }
+      }
     }
   }
+  std::span<const Seen> known() const { return std::span(seen_).first(known_); }
+  std::span<const Seen> fresh() const { return std::span(seen_).last(fresh_); }
 
-  ObjectMotionOptions<S> options_;
-  Way way_;
-  detail::motion::InitialDots<S> initial_;
+  MotionStatus look(double depth_noise_mm) {
+    if (flagged_ == 0) {
+      if (found_ > 0) {
+        end();
+        has_slid_ = false;
+      }
+      return found_ > 0 ? MotionStatus::no_contact : MotionStatus::no_pose;
+    }
+    const std::size_t sticking = known_ + fresh_;
+    if (5 * sticking < touching_ || (has_slid_ && touching_ > 0 && 2 * sticking <= touching_)) {
+      end();
+      has_slid_ = true;
+      return MotionStatus::slipping;
+    }
+    if (!(has_object_ ? advance() : begin())) {
+      return MotionStatus::no_pose;
+    }
+    const bool doubted = depth_noise_mm > 0 && S(1.4 * depth_noise_mm) < last_.residual_rms_mm;
+    return doubted ? MotionStatus::doubtful : MotionStatus::ok;
+  }
+
+  void end() {
+    has_object_ = false;
+    std::fill(map_.begin(), map_.end(), Entry());
+  }
+
+  template <class From, class Weight>
+  RigidFit<S> fit(std::span<const Seen> dots, const From& from, const Weight& weight) const {
+    const auto seen = [&](Index k) -> const Seen& { return dots[static_cast<std::size_t>(k)]; };
+    return fit_rigid<S>(
+        static_cast<Index>(dots.size()), [&](Index k) { return from(seen(k)); },
+        [&](Index k) { return seen(k).dot_mm; }, [&](Index k) { return weight(seen(k)); });
+  }
+
+  bool begin() {
+    const auto itself = [](const Seen& s) { return s.dot_mm; };
+    if (fresh_ < 9 || !fit(fresh(), itself, [](const Seen&) { return S(1); }).determined) {
+      return false;
+    }
+    Point3<S> sum = {S(0), S(0), S(0)};
+    pitch_sq_ = S(0);
+    double pairs = 0;
+    const Seen* next = nullptr;  // they are listed from the last to the first
+    for (const Seen& s : fresh()) {
+      sum += s.dot_mm;
+      if (next != nullptr && next->cell == s.cell + 1 &&
+          next->cell % static_cast<std::size_t>(cols_) != 0) {
+        pitch_sq_ = pitch_sq_ + squared_norm(next->dot_mm - s.dot_mm);
+        pairs += 1;
+      }
+      next = &s;
+    }
+    pitch_sq_ = pairs > 0 ? pitch_sq_ / S(pairs) : S(square(50.0));
+    if (pairs > 0 && !(S(square(0.05)) < pitch_sq_ && pitch_sq_ < S(square(50.0)))) {
+      return false;  // dots in m or um
+    }
+    start_mm_ = sum / S(static_cast<double>(fresh_));
+    const Index object = last_.object + 1;
+    last_ = {};
+    last_.object = object;
+    last_.begun = has_object_ = true;
+    last_.dots_used = static_cast<Index>(fresh_);
+    last_.position_mm = start_mm_;
+    has_slid_ = false;
+    enter();
+    return true;
+  }
+
+  bool advance() {
+    using std::sqrt;
+    const RigidFit<S> found = fit(
+        known(), [this](const Seen& s) { return map_[s.cell].place_mm; },
+        [this](const Seen& s) {  // by the noise of the entry and of the dot
+          return map_[s.cell].weight / (map_[s.cell].weight + S(1));
+        });
+    if (known_ < 3 || !found.determined) {
+      return false;
+    }
+    S sum_sq = S(0);
+    for (const Seen& s : known()) {
+      sum_sq = sum_sq + squared_norm(s.dot_mm - found.pose(map_[s.cell].place_mm));
+    }
+    const S mean_sq = sum_sq / S(static_cast<double>(known_));
+    // no membrane turns by 2.5 rad between two poses: exchanged rows and columns turn a patch over
+    if (pitch_sq_ < S(16) * mean_sq ||
+        S(2.5) < angle_between(last_.pose.rotation, found.pose.rotation)) {
+      return false;
+    }
+    last_.dots_used = static_cast<Index>(known_);
+    last_.pose = found.pose;
+    last_.angles = zyx_angles(found.pose.rotation);
+    last_.position_mm = found.pose(start_mm_);
+    last_.displacement_mm = last_.position_mm - start_mm_;
+    last_.residual_rms_mm = S(0) < mean_sq ? sqrt(mean_sq) : S(0);
+    for (Entry& entry : map_) {
+      entry.weight = entry.left ? S(0) : entry.weight;
+    }
+    const Pose<S> back = inverse(found.pose);
+    for (const Seen& s : known()) {
+      Entry& entry = map_[s.cell];
+      entry.weight = entry.weight + S(1);
+      entry.place_mm += (back(s.dot_mm) - entry.place_mm) / entry.weight;
+    }
+    enter();
+    return true;
+  }
+
+  /// A new entry has the error of the pose besides that of its dot: it counts as half a dot.
+  void enter() {
+    const Pose<S> back = inverse(last_.pose);
+    for (const Seen& s : fresh()) {
+      map_[s.cell] = {back(s.dot_mm), S(1) / S(2)};
+    }
+  }
+
+  Index rows_, cols_;
+  std::vector<Entry> map_;
+  std::vector<Seen> seen_;  ///< dots that stick: known ones first, new ones from the back
+  std::size_t known_ = 0, fresh_ = 0;  ///< how many
+  std::size_t flagged_ = 0, found_ = 0, touching_ = 0;
+  bool has_object_ = false;
+  bool has_slid_ = false;  ///< and no object has begun since
+  S pitch_sq_ = S(0);      ///< mean square distance of neighbours when the object began, mm^2
+  Point3<S> start_mm_ = {S(0), S(0), S(0)};
+  ObjectMotionResult<S> last_;
 };
 
 }  // namespace v0

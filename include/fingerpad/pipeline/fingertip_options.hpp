@@ -22,6 +22,7 @@
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/motion/spatial_dots.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 

@@ -159,14 +159,12 @@ struct FingertipContact {
 struct FingertipDots {
   struct Followed {
     ObjectMotion<> motion;
-    ObjectMotion<>::State motion_state;
     SpatialStickRatio<> stick;
     SpatialStickRatio<>::State stick_state;
     FrictionLimit<> friction;
 
     explicit Followed(const FingertipOptions& o)
-        : motion(o.free_dots_mm),
-          motion_state(motion.start()),
+        : motion(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
           stick(o.free_dots_mm.rows(), o.free_dots_mm.cols(), o.stick),
           stick_state(stick.start()),
           friction(o.friction) {}
@@ -175,13 +173,15 @@ struct FingertipDots {
   OwnedGrid<std::uint8_t> touching;
   OwnedGrid<DotState> states;
   double radius_px;
+  double depth_noise_mm;
   std::optional<Followed> followed;  // empty without dots
 
   explicit FingertipDots(const FingertipOptions& o)
       : at_mm(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         touching(at_mm.rows, at_mm.cols),
         states(at_mm.rows, at_mm.cols),
-        radius_px(o.dot_radius_px) {
+        radius_px(o.dot_radius_px),
+        depth_noise_mm(o.stick.depth_mm) {
     expects(radius_px >= 0 && radius_px <= 1000, "FingertipOptions", "dot_radius_px", radius_px,
             "in [0, 1000]");
     if (!at_mm.cells.empty()) {
@@ -194,14 +194,14 @@ struct FingertipDots {
     return !followed || same_size(dots_px, states.view());
   }
   bool answers(const FingertipResult& touch) const {
-    return !followed || (touch.motion.ok() && is_finite(touch.stick.stick_ratio));
+    return !followed || (touch.motion.has_pose() && is_finite(touch.stick.stick_ratio));
   }
   StridedView<const DotSlip<double>> slipped() const {
     return followed ? followed->stick_state.slips() : StridedView<const DotSlip<double>>();
   }
   void reset() {
     if (followed) {
-      followed->motion_state = followed->motion.start();
+      followed->motion = ObjectMotion<>(at_mm.rows, at_mm.cols);
       followed->stick_state.reset();
       followed->friction.reset();
     }
@@ -239,7 +239,7 @@ struct FingertipDots {
       const LazyView slips(states.rows, states.cols, [&](Index i, Index j) {
         return !touch.slip.holds(states.view()(i, j));
       });
-      touch.motion = followed->motion(at_mm.view(), touching.view(), slips, followed->motion_state);
+      touch.motion = followed->motion(at_mm.view(), touching.view(), slips, depth_noise_mm);
     }
     watch(FingertipStage::motion);
   }
