@@ -21,7 +21,7 @@ namespace {
 constexpr int n = 21;  // dots in each direction
 constexpr double frame_s = 1.0 / 30;
 constexpr double dropped_mm = 20;
-const fingerpad::GripLaw<> law{.raise_gain_n_per_s = 20};  // low, because the cup fills slowly
+const fingerpad::GripOptions<> options{.raise_gain_n_per_s = 20};  // low, because the cup fills slowly
 
 /// Load on the fingertip, N: the cup is filled for 13 s, then held.
 double load_at(double time_s) {
@@ -30,14 +30,13 @@ double load_at(double time_s) {
 
 grip::Run run(bool controlled) {
   const fingerpad::StickRatio stick_ratio(n, n);  // once
-  const fingerpad::GripControl control(law);
+  fingerpad::GripControl control(options, 1.5);  // N, when the cup was grasped
   auto stick_state = stick_ratio.start();
-  auto grip_state = control.start(1.5);  // N, when the cup was grasped
 
   std::vector<fingerpad::DotState> states(n * n);
   const fingerpad::StridedView<fingerpad::DotState> states_out(states.data(), n, n, n);
 
-  double force_n = grip_state.force_n();
+  double force_n = control.force_n();
   grip::SlippingLoad load({.dots = n}, load_at(0), force_n);
   grip::Camera camera(n);
   grip::Run record;
@@ -47,7 +46,7 @@ grip::Run run(bool controlled) {
     camera.look_at(load);
     const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
     const double ratio = double(stick.stick_ratio);
-    const auto grip = control(stick, frame_s, grip_state);
+    const auto grip = control(stick, frame_s);
     record.push_back(
         {time_s, load_at(time_s), load.friction_limit_n(), force_n, ratio, load.slip_mm()});
     if (controlled) {
@@ -76,7 +75,7 @@ int main(int count, char** words) {
   const auto without = run(false);
   print("grip force from the stick ratio", with);
   print("constant grip force", without);
-  if (count > 1 && !cv::imwrite(words[1], grip::grip_chart(with, without, law.set_point))) {
+  if (count > 1 && !cv::imwrite(words[1], grip::grip_chart(with, without, options.set_point))) {
     std::fprintf(stderr, "%s: cannot be written\n", words[1]);
     return 1;
   }

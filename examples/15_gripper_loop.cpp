@@ -26,8 +26,7 @@ int main(int argc, char** argv) {
                          recording.frames.size());
   const auto settings = replay::fingertip_settings(recording, dots.initial());
   replay::RecordedFingertip fingertip(settings);
-  const fingerpad::GripControl<> control;
-  auto grip = control.start(3);  // N
+  fingerpad::GripControl<> control({}, 3);  // N
 
   double last_s = 0, worst_ms = 0, raised_n = 0;
   const auto begin = Clock::now();
@@ -41,7 +40,7 @@ int main(int argc, char** argv) {
                                  recording.signals.pressure_mpa(k), time_s);
     // Recorded forces do not react to the grip, so only the stick ratio is used here. On a real
     // hand pass touch.slip itself; the grip force then follows the load.
-    const auto answer = control({touch.slip.stick_ratio, touch.slip.update}, time_s - last_s, grip);
+    const auto answer = control(touch.slip.stick_ratio, touch.slip.update, time_s - last_s);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - came).count();
 
     std::printf("%.1f s  stick ratio %4.2f  grip %5.2f N  computed in %5.1f ms\n", time_s,

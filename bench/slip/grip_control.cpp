@@ -38,15 +38,14 @@ struct Calls {
 /// Grip control of one fingertip in an endless sequence of calls.
 template <class S>
 struct Gripping {
-  GripControl<S> control;
-  typename GripControl<S>::State state = control.start(S(3));
+  GripControl<S> control{{}, S(3)};
   Calls calls = {};
 
   S next() {
     const auto update = calls.k % 4 == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
-    const S force = control({S(calls.next()), update}, S(0.01), state).force_n;
+    const S force = control(S(calls.next()), update, S(0.01)).force_n;
     if (calls.k % 64 == 0) {
-      state.reset();
+      control.begin(S(3));
     }
     return force;
   }
@@ -96,14 +95,14 @@ double mean(const std::vector<double>& values) {
 }
 
 template <class S>
-Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
+Runs all_runs(const GripOptions<S>& options, const test::GripVariation& vary) {
   Runs runs;
   for (const test::GripScene scene : test::grip_scenes) {
     if (vary.falls_twice && scene != test::GripScene::changes) {
       continue;
     }
     for (int k = 0; k < test::runs_of_a_grip_scene; ++k) {
-      const test::GripRun run = test::run_grip(law, scene, k, vary);
+      const test::GripRun run = test::run_grip(options, scene, k, vary);
       const bool held = run.slip_mm < 0.5;
       runs.slip_mm.push_back(run.slip_mm);
       runs.beyond.push_back(held ? run.beyond : not_a_number<double>());
@@ -117,14 +116,14 @@ Runs all_runs(const GripLaw<S>& law, const test::GripVariation& vary) {
 
 template <class S = double>
 void add_loop(const std::string& name,
-              const GripLaw<S>& law,
+              const GripOptions<S>& options,
               const test::GripVariation& vary = {}) {
   const bench::Memory memory;
-  const auto d = std::make_shared<Gripping<S>>(Gripping<S>{GripControl<S>(law)});
+  const auto d = std::make_shared<Gripping<S>>(Gripping<S>{GripControl<S>(options, S(3))});
   bench::add(
       "closed loop/" + name, 1, memory.bytes(), [d] { benchmark::DoNotOptimize(d->next()); },
       [=, runs = Runs()](auto& counters) mutable {
-        runs = runs.beyond.empty() ? all_runs(law, vary) : runs;
+        runs = runs.beyond.empty() ? all_runs(options, vary) : runs;
         bench::note_errors(counters, "slip", "mm", runs.slip_mm);
         bench::note_errors(counters, "force beyond need", "share", runs.beyond);
         std::vector<double> all;
@@ -141,25 +140,23 @@ void add_loop(const std::string& name,
 }  // namespace
 
 int main(int argc, char** argv) {
-  const GripLaw<double> law;
-  add_loop("constant force", law, {.is_controlled = false});
-  add_loop("stick ratio alone", law, {.knows_force = false});
-  add_loop("dots and friction", law);
+  const GripOptions<double> options;
+  add_loop("constant force", options, {.is_controlled = false});
+  add_loop("stick ratio alone", options, {.knows_force = false});
+  add_loop("dots and friction", options);
   add_loop<float>("dots and friction, float", {});
   add_loop("margin 0.1", {.slip_margin = 0.1});
   add_loop("margin 0.25", {.slip_margin = 0.25});
-  add_loop("nothing searched", {.first_search_per_s = 0, .search_per_s = 0});
-  add_loop("searches faster", {.first_search_per_s = 0.3, .search_per_s = 0.08});
-  add_loop("friction 0.7 times as large", law, {.friction = 0.7});
-  add_loop("load twice as large", law, {.load = 2});
-  add_loop("load half as large", law, {.load = 0.5});
-  add_loop("taken with 1.5 times the least force", law, {.first = 1.5});
-  add_loop("twice the noise of dots", law, {.lateral_mm = 0.01, .depth_mm = 0.05});
-  add_loop("twice the noise of forces", law, {.force_share = 0.03});
-  add_loop("a gripper that lags by 50 ms", law, {.lag_s = 0.05});
-  add_loop("friction that falls twice, taken with 1.5 times", law,
+  add_loop("friction 0.7 times as large", options, {.friction = 0.7});
+  add_loop("load twice as large", options, {.load = 2});
+  add_loop("load half as large", options, {.load = 0.5});
+  add_loop("taken with 1.5 times the least force", options, {.first = 1.5});
+  add_loop("twice the noise of dots", options, {.lateral_mm = 0.01, .depth_mm = 0.05});
+  add_loop("twice the noise of forces", options, {.force_share = 0.03});
+  add_loop("a gripper that lags by 50 ms", options, {.lag_s = 0.05});
+  add_loop("friction that falls twice, taken with 1.5 times", options,
            {.first = 1.5, .falls_twice = true});
-  add_loop("friction that falls twice", law, {.falls_twice = true});
+  add_loop("friction that falls twice", options, {.falls_twice = true});
   bench::add_streaming("closed loop");
   add_call<Gripping, double>("call/GripControl, double", "force", "N");
   add_call<Gripping, float>("call/GripControl, float", "force", "N");

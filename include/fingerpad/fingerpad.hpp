@@ -48,7 +48,6 @@
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
-#include "fingerpad/slip/grip_law.hpp"
 #include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"

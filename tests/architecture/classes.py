@@ -133,8 +133,8 @@ def planted_are_found(root):
             for name in ("classes.md", "errata.md"):
                 shutil.copy(root / "docs" / name, copy / "docs")
             if text is None:
-                header = copy / "include/fingerpad/slip/grip_law.hpp"
-                header.write_text(header.read_text().replace("struct GripLaw {\n", "struct GripLaw {\n  S planted = S(1);\n\n"))
+                header = copy / "include/fingerpad/slip/grip_control.hpp"
+                header.write_text(header.read_text().replace("struct GripOptions {\n", "struct GripOptions {\n  S planted = S(1);\n\n"))
             else:
                 (copy / file).write_text((copy / file).read_text() + text)
             found = set(gaps(copy)) - before

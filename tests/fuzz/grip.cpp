@@ -16,28 +16,26 @@ using fuzz::require;
 
 namespace {
 
-GripLaw<double> any_law(Input& in) {
-  GripLaw<double> law;
-  law.set_point = in.number(0.1, 0.9);
-  law.raise_gain_n_per_s = in.number(1, 100);
-  law.lower_above = in.number(0.5, 1);
-  law.lower_gain_n_per_s = in.number(0, 10);
-  law.rise_limit_n_per_s = in.number(1, 50);
-  law.fall_limit_n_per_s = in.number(0, 5);
-  law.min_force_n = in.number(0, 2);
-  law.max_force_n = in.number(5, 30);
-  law.safe_force_n = in.number(2, 10);
-  law.sliding_ratio = in.number(0, 0.5);
-  law.lost_after_s = in.number(0, 1);
-  law.longest_step_s = in.number(0.01, 1);
-  return law;
+GripOptions<double> any_options(Input& in) {
+  GripOptions<double> options;
+  options.set_point = in.number(0.1, 0.9);
+  options.raise_gain_n_per_s = in.number(1, 100);
+  options.rise_limit_n_per_s = in.number(1, 50);
+  options.fall_limit_n_per_s = in.number(0, 5);
+  options.min_force_n = in.number(0, 2);
+  options.max_force_n = in.number(5, 30);
+  options.safe_force_n = in.number(2, 10);
+  options.response_s = in.number(0, 1);
+  return options;
 }
 
 void try_grip(Input& in) {
-  const GripLaw<double> law = any_law(in);
-  const GripControl<double> control(law);
+  const GripOptions<double> options = any_options(in);
+  GripControl<double> control(options, in.number(0, 20));
   FrictionLimit<double> limit({.slide_fraction = in.number(0.5, 1)});
-  auto state = control.start(in.number(0, 20));
+  const auto is_within = [&](double force_n) {
+    return is_finite(force_n) && force_n >= options.min_force_n && force_n <= options.max_force_n;
+  };
   for (Index calls = in.whole(1, 60); calls > 0; --calls) {
     const ContactLoad<double> load{in.number(0, 10), in.number(0, 10), in.number(-20, 20),
                                    in.number(0, 5)};
@@ -46,27 +44,21 @@ void try_grip(Input& in) {
     const auto slip = fuzz::frame([&] { return limit(load, ratio, update); });
     require(std::isnan(slip.stick_ratio) || (slip.stick_ratio >= 0 && slip.stick_ratio <= 1),
             "a ratio is in [0, 1], or NaN");
-    auto less = state;
     if (in.flag()) {
-      state.follow(in.number(0, 30));
+      control.follow(in.number(0, 30));
     }
-    less = state;
-    const auto held = fuzz::frame([&] { return control({ratio, update}, step_s, state); });
-    require(is_finite(held.force_n) && held.force_n >= law.min_force_n &&
-                held.force_n <= law.max_force_n,
-            "a force is within its limits");
+    auto less = control, by_slip = control;
+    const auto held = fuzz::frame([&] { return control(ratio, update, step_s); });
+    require(is_within(held.force_n), "a force is within its limits");
     if (ratio >= 0 && ratio <= 1) {
       const double smaller = ratio * static_cast<double>(in.byte()) / 255;
-      require(control({smaller, update}, step_s, less).force_n >= held.force_n,
+      require(less(smaller, update, step_s).force_n >= held.force_n,
               "less sticking never gives less force");
     }
-    auto by_slip = control.start();
-    const auto fed = fuzz::frame([&] { return control(slip, step_s, by_slip); });
-    require(fed.force_n >= law.min_force_n && fed.force_n <= law.max_force_n,
-            "a force from friction is within its limits");
+    const auto fed = fuzz::frame([&] { return by_slip(slip, step_s); });
+    require(is_within(fed.force_n), "a force from friction is within its limits");
+    control = in.flag() ? by_slip : control;
   }
-  state.reset();
-  require(state.force_n() >= law.min_force_n, "a reset equals a start");
 }
 
 template <class Search>

@@ -115,31 +115,31 @@ void search_again_and_again(const Search& search) {
 
 TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
   Any any;
-  const GripControl<double> control;
+  GripControl<double> control({}, 3);
   FrictionLimit<double> limit;
-  auto state = control.start(3);
   bool within = true;
   for (long k = 0; k < frames(); ++k) {
     const double ratio = any.once_in(20) ? test::nan : any.number(-0.1, 1.1);
     const double step_s = any.once_in(50) ? any.number(-1, 1000) : 0.01;
     const auto update = static_cast<RatioUpdate>(static_cast<int>(any.number(0, 4)));
     const ContactLoad<double> load{any.number(-1, 9), any.number(0, 9), any.number(-9, 9), 2};
-    const double force = control(limit(load, ratio, update), step_s, state).force_n;
+    const double force = control(limit(load, ratio, update), step_s).force_n;
     within = within && force >= 0.5 && force <= 20;
     if (any.once_in(5000)) {
-      state.reset();
+      control.begin(3);
     }
   }
   CHECK(within);
   // the force now depends on the current input alone
-  auto fresh = control.start();
-  state.follow(5);
+  GripControl<double> fresh;
+  control.follow(5);
   fresh.follow(5);
-  (void)control({1.0}, 0.01, state);
-  (void)control({1.0}, 0.01, fresh);
+  (void)control(1.0, RatioUpdate::fresh, 0.01);
+  (void)fresh(1.0, RatioUpdate::fresh, 0.01);
   for (int k = 0; k < 200; ++k) {
     const double ratio = k % 3 == 0 ? 0.5 : 0.9;
-    CHECK(control({ratio}, 0.01, state).force_n == control({ratio}, 0.01, fresh).force_n);
+    CHECK(control(ratio, RatioUpdate::fresh, 0.01).force_n ==
+          fresh(ratio, RatioUpdate::fresh, 0.01).force_n);
   }
 }
 

@@ -76,25 +76,24 @@ TEST_CASE("mistakes with the grip's control", "[mistakes]") {
       {"ratio in percent", [](Input& in) { in.ratio *= 100; }, "blind"},
       {"ratio of slip for that of stick", [](Input& in) { in.ratio = 1 - in.ratio; }, "slipping"},
       {"no ratio", [](Input& in) { in.ratio = test::nan; }, "blind"},
-      {"times in ms: each counts as longest_step_s", [](Input& in) { in.step_s *= 1e3; },
-       "slipping"},
-      {"no times", [](Input& in) { in.step_s = test::nan; }, "no time"},
-      {"time backwards", [](Input& in) { in.step_s *= -1; }, "no time"},
+      {"times in ms: each counts as 0.1 s", [](Input& in) { in.step_s *= 1e3; }, "slipping"},
+      {"no times", [](Input& in) { in.step_s = test::nan; }, "blind"},
+      {"time backwards", [](Input& in) { in.step_s *= -1; }, "blind"},
       {"times of the clock for steps", [](Input& in) { in.step_s = 1.7e9; }, "slipping"},
-      {"a stuck ratio", [](Input& in) { in.ratio = 0.9; }, "enough sticks"},
+      {"a stuck ratio", [](Input& in) { in.ratio = 0.9; }, "sticks"},
       {"a ratio that nobody renews", [](Input& in) { in.update = RatioUpdate::missing; }, "blind"},
       {"nothing touches", [](Input& in) { in.update = RatioUpdate::no_contact; }, "lost"},
   };
   for (const auto& mistake : mistakes) {
-    const GripControl<> control;
-    auto state = control.start(2);
+    GripControl<> control({}, 2);
     GripResult<> r;
     for (int k = 0; k < 40; ++k) {
       Input in{k < 10 ? 1 - 0.05 * k : 0.5};
       mistake.make(in);
-      r = control({in.ratio, in.update}, in.step_s, state);
-      CHECK((r.force_n >= control.law().min_force_n && r.force_n <= control.law().max_force_n));
-      CHECK((r.ok() || r.force_n <= control.law().safe_force_n));
+      r = control(in.ratio, in.update, in.step_s);
+      CHECK((r.force_n >= control.options().min_force_n &&
+             r.force_n <= control.options().max_force_n));
+      CHECK((r.ok() || r.force_n <= control.options().safe_force_n));
     }
     INFO(mistake.name);
     CHECK(name_of(r.why) == std::string(mistake.said));
@@ -143,8 +142,7 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
   };
   for (const auto& mistake : mistakes) {
     FrictionLimit<> limit;
-    const GripControl<> control;
-    auto state = control.start(4);
+    GripControl<> control({}, 4);
     GripResult<> r{.force_n = 4};
     bool slid = false;
     for (int k = 0; k < 400; ++k) {
@@ -155,8 +153,9 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
       Input in{{.normal_n = r.force_n, .tangential_n = pull_n}, share * share, k};
       mistake.make(in);
       const auto slip = limit(in.load, in.stick_ratio, RatioUpdate::fresh);
-      r = control(slip, 0.02, state);
-      CHECK((r.force_n >= control.law().min_force_n && r.force_n <= control.law().max_force_n));
+      r = control(slip, 0.02);
+      CHECK((r.force_n >= control.options().min_force_n &&
+             r.force_n <= control.options().max_force_n));
     }
     INFO(mistake.name << ": " << r.force_n << " N");
     CHECK(std::string(name_of(r.why)) + (slid ? ", slid" : ", held") == mistake.said);

@@ -160,11 +160,10 @@ void tell_forces(Results& tell) {
   const auto sheared = shear(80, {0.4, -0.3}, 0.1);
   tell("shear x N", sheared.tangential_force_n.x);
   tell("shear moment N mm", sheared.moment_n_mm);
-  static const GripControl<> control;
-  auto state = control.start(3);
+  GripControl<> control({}, 3);
   GripResult<> held;
   for (int k = 0; k < 1000; ++k) {
-    held = control({0.5 + 0.0005 * k}, 0.01, state);
+    held = control(0.5 + 0.0005 * k, RatioUpdate::fresh, 0.01);
   }
   tell("grip N", held.force_n);
 }

@@ -9,14 +9,13 @@ using namespace fingerpad;
 
 TEST_CASE("grip control: nothing allocates", "[grip_control]") {
   const long before = test::allocations();
-  const GripControl<double> control;
-  auto state = control.start(3);
+  GripControl<double> control({}, 3);
   double force_n = 0;
   for (int k = 0; k < 300; ++k) {
     const double ratio = k % 7 == 0 ? not_a_number<double>() : 0.004 * (k % 250);
-    force_n += control({ratio, static_cast<RatioUpdate>(k % 3)}, 0.01, state).force_n;
-    auto bookmark = state;
-    bookmark.reset();
+    force_n += control(ratio, static_cast<RatioUpdate>(k % 3), 0.01).force_n;
+    auto bookmark = control;
+    bookmark.begin(1);
   }
   const long after = test::allocations();
   CHECK(force_n > 0);

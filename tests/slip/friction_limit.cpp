@@ -368,28 +368,26 @@ TEST_CASE("friction limit: names, and parameters that are refused", "[friction_l
 
 TEST_CASE("friction limit: what it says feeds a grip", "[friction_limit]") {
   FrictionLimit<double> limit;
-  const GripControl control;
+  GripControl<> control({}, 3);
 
-  auto grip = control.start(3);
   (void)limit(pull(2), 0.1, RatioUpdate::fresh);  // learns the limit
-  CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh), 0.01, grip).why ==
-        GripReason::follows_load);
+  CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh), 0.01).why == GripReason::follows_load);
   // The membrane stands still and the dots agree. Without friction the force would be held; with
   // friction it follows the load.
   const auto slip = limit(pull(2), 0.9, RatioUpdate::unmoved);
-  const auto raised = control(slip, 0.01, grip);
+  const auto raised = control(slip, 0.01);
   CHECK(raised.ok());
   CHECK(raised.why == GripReason::follows_load);
   CHECK(raised.force_n > 3);
   // a ratio in percent is invalid: the force waits, and the status reports it
-  auto other = control.start(3);
-  const auto percent = control({90.0}, 0.01, other);
+  GripControl<> other({}, 3);
+  const auto percent = other(90.0, RatioUpdate::fresh, 0.01);
   CHECK_FALSE(percent.ok());
   CHECK(percent.force_n == 3);
   // nor does it lead to full grip when it continues, also through the friction limit
   for (int k = 0; k < 1000; ++k) {
-    const auto wrong = control(limit(pull(1), 90.0, RatioUpdate::fresh), 0.01, other);
+    const auto wrong = other(limit(pull(1), 90.0, RatioUpdate::fresh), 0.01);
     CHECK_FALSE(wrong.ok());
-    CHECK(wrong.force_n <= control.law().safe_force_n);
+    CHECK(wrong.force_n <= control.options().safe_force_n);
   }
 }

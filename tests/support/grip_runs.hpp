@@ -70,7 +70,7 @@ inline double friction_left(const GripVariation& vary, double time_s) {
 /// Runs 0 to 9 have the friction 0.4, 0.55, 0.7, 0.85 and 1, with the slower and with the faster
 /// load.
 template <class S>
-GripRun run_grip(const fingerpad::GripLaw<S>& law,
+GripRun run_grip(const fingerpad::GripOptions<S>& options,
                  GripScene scene,
                  int number,
                  const GripVariation& vary = {}) {
@@ -92,9 +92,8 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
   const SpatialStickRatio<S> stick_ratio(
       tip.dots, tip.dots, {.lateral_mm = vary.lateral_mm, .depth_mm = vary.depth_mm});
   FrictionLimit<S> limit;
-  const GripControl<S> control(law);
+  GripControl<S> control(options, S(force_n));
   auto stick_state = stick_ratio.start();
-  auto grip_state = control.start(S(force_n));
   Random random(static_cast<std::uint64_t>(1 + number + 100 * static_cast<int>(scene)));
   Image<Point3<double>> dots = free_dots(tip);
   Image<unsigned char> touch(tip.dots, tip.dots);
@@ -127,8 +126,7 @@ GripRun run_grip(const fingerpad::GripLaw<S>& law,
     const auto slip = limit(ContactLoad<S>{S(normal_n), S(std::abs(tangential_n))}, stick);
     sum += real_n * now / load_n;
     frames += 1;
-    const auto grip = vary.knows_force ? control(slip, S(frame_s), grip_state)
-                                       : control(stick, S(frame_s), grip_state);
+    const auto grip = vary.knows_force ? control(slip, S(frame_s)) : control(stick, S(frame_s));
     force_n = vary.is_controlled ? static_cast<double>(grip.force_n) : force_n;
   }
   return {load.slip_mm(), sum / frames - 1};

@@ -73,7 +73,7 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
   S arms = S(0);
   for_each([&](const Point3<S>& p) {
     const Point3<S> arm = p - surface.middle;
-    arms += norm(arm - dot(arm, normal) * normal);
+    arms = arms + norm(arm - dot(arm, normal) * normal);
   });
   const S normal_n = -dot(force_n, normal);
   return {normal_n, norm(force_n + normal_n * normal),
@@ -85,15 +85,15 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
 template <scalar S>
 S friction_of(const ContactLoad<S>& load) {
   using std::sqrt;
-  if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n) || !(load.normal_n > S(0))) {
+  if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n) || !(S(0) < load.normal_n)) {
     return not_a_number<S>();
   }
   const bool turns =
-      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && load.arm_mm > S(0);
+      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && S(0) < load.arm_mm;
   const S along = load.tangential_n / load.normal_n;
   const S about = turns ? load.moment_n_mm / (load.arm_mm * load.normal_n) : S(0);
   const S sq = along * along + about * about;
-  return sq > S(0) ? sqrt(sq) : sq;  // a derivative at 0 as well
+  return S(0) < sq ? sqrt(sq) : sq;  // a derivative at 0 as well
 }
 
 /// How current a stick ratio is.
@@ -182,7 +182,7 @@ struct [[nodiscard]] SlipResult {
   /// and more than half of them stick, all count: the states are those from before the reversal,
   /// and the few dots that slip since have little weight in the fit of the motion.
   bool holds(DotState state) const {
-    const bool carried = falls_back && update == RatioUpdate::fresh && S(2) * stick_ratio > S(1);
+    const bool carried = falls_back && update == RatioUpdate::fresh && S(1) < S(2) * stick_ratio;
     return status != FrictionLimitStatus::sliding && !in_doubt &&
            (carried || state != DotState::slip);
   }
@@ -215,7 +215,7 @@ class FrictionLimit {
                            RatioUpdate update,
                            SlipEvidence source = SlipEvidence::dots) {
     SlipResult<S> result;
-    const bool known = ratio >= S(0) && ratio <= S(1);
+    const bool known = value(ratio) >= 0 && value(ratio) <= 1;
     const bool fresh = known && update == RatioUpdate::fresh;
     const bool slides = fresh && ratio < S(least_stick);
     result.stick_ratio = known ? ratio : not_a_number<S>();
@@ -231,13 +231,13 @@ class FrictionLimit {
     result.normal_n = load.normal_n;
     if (slides) {
       learn(result.friction);
-    } else if (fresh && S(2) * ratio > S(1) && result.friction > S(max_rise) * limit_) {
+    } else if (fresh && S(1) < S(2) * ratio && S(max_rise) * limit_ < result.friction) {
       limit_ = not_a_number<S>();
     }
     result.limit = limit_;
     result.margin = S(1) - result.friction / limit_;
     result.status = is_finite(limit_) ? FrictionLimitStatus::held : FrictionLimitStatus::no_limit;
-    if (result.friction > S(options_.slide_fraction) * limit_) {
+    if (S(options_.slide_fraction) * limit_ < result.friction) {
       result.status = FrictionLimitStatus::sliding;
       result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
       result.stick_ratio = S(0);
@@ -269,7 +269,7 @@ class FrictionLimit {
         const S before = highest_of_last(age), now = friction_with(load);
         const bool carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
         const bool slides =
-            now > S(options_.slide_fraction) * before && !is_finite(limit_) && S(2) * ratio < S(1);
+            S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
         ratio = carried ? S(seen.back.stick_ratio) : slides ? S(0) : ratio;
         update = carried || slides ? RatioUpdate::fresh : update;
       }
@@ -278,7 +278,7 @@ class FrictionLimit {
     result.reference_age = age;
     result.falls_back = falls_back;
     result.in_doubt = !falls_back && update == RatioUpdate::fresh &&
-                      !(ratio - S(2) * S(seen.ratio_sd) > S(least_stick));
+                      !(S(least_stick) < ratio - S(2) * S(seen.ratio_sd));
     return result;
   }
 
@@ -314,10 +314,10 @@ class FrictionLimit {
   /// friction, and one near 0 is no friction.
   void learn(const S& friction) {
     if (!is_finite(limit_)) {
-      limit_ = friction > S(1e-6) ? friction : limit_;
+      limit_ = S(1e-6) < friction ? friction : limit_;
     } else if (!(friction < S(options_.slide_fraction) * limit_)) {
       const S top = S(max_rise) * limit_, toward = friction < top ? friction : top;
-      limit_ += (toward > limit_ ? S(0.5) : S(0.1)) * (toward - limit_);
+      limit_ = limit_ + (limit_ < toward ? S(0.5) : S(0.1)) * (toward - limit_);
     }
   }
 
@@ -331,7 +331,7 @@ class FrictionLimit {
       if (!is_finite(load)) {
         return load;
       }
-      highest = highest > load ? highest : load;
+      highest = load < highest ? highest : load;
     }
     return highest;
   }
