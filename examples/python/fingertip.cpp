@@ -189,6 +189,7 @@ void bind_slip_result(py::module_& module) {
       .def_readonly("dots_ratio", &Slip::dots_ratio, "stick ratio from the dots alone")
       .def_readonly("reference_age", &Slip::reference_age, "frames; 0 if unknown")
       .def_readonly("falls_back", &Slip::falls_back)
+      .def_readonly("in_doubt", &Slip::in_doubt, "no dot is sure to move with the object")
       .def_readonly("normal_n", &Slip::normal_n)
       .def_readonly("friction", &Slip::friction)
       .def_readonly("limit", &Slip::limit, "at the last slide")
