@@ -32,9 +32,7 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   dots(0, 5) = {std::nan(""), 1};
   dots(0, 6) = {4, 2};  // the last column
   Dots out(1, 7);
-  const auto result = spatial_dots(camera, dots, depth, out);
-  CHECK(result.ok());
-  CHECK(result.found == 4);
+  CHECK(spatial_dots(camera, dots, depth, out) == 4);
   const auto expected = point_at(camera, 2.5, 1.25, 10 + 1.25 - 0.3125);
   CHECK(out(0, 0).x == Approx(expected.x));
   CHECK(out(0, 0).y == Approx(expected.y));
@@ -46,9 +44,9 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
     CHECK(std::isnan(out(0, missing).z));
   }
   Dots other_size(2, 7);
-  CHECK(!spatial_dots(camera, dots, depth, other_size).ok());
+  CHECK(spatial_dots(camera, dots, depth, other_size) == -1);
   cv::Mat_<cv::Vec3f> image(1, 7);
-  CHECK(spatial_dots(camera, dots, depth, image).found == 4);
+  CHECK(spatial_dots(camera, dots, depth, image) == 4);
   CHECK(static_cast<double>(image(0, 0)[2]) == Approx(expected.z));
 
   test::Flags mask(4, 5, 0);

@@ -9,8 +9,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "fingerpad/core/status.hpp"
-#include "fingerpad/motion/detail/dot_frame.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -63,27 +64,21 @@ P point_from(const Point3<S>& p) {
 }
 }  // namespace detail::motion
 
-struct [[nodiscard]] SpatialDotsResult {
-  FrameStatus status = FrameStatus::refused;
-  Index found = 0;  ///< dots with a known position in space
-
-  bool ok() const { return status == FrameStatus::ok; }
-};
-
 /// Dots of a frame in space, in mm, from their positions in the image (px) and the depth map (mm,
-/// along each pixel's ray). NaN where a dot was not found or has no depth. Allocates nothing.
+/// along each pixel's ray). NaN where a dot was not found or has no depth. Returns how many
+/// have a place; -1, and nothing is written, if the grids differ in size. Allocates nothing.
 template <scalar S, dot_grid Dots, grid Depth, spatial_dot_grid Out>
-SpatialDotsResult spatial_dots(const Camera<S>& camera,
-                               const Dots& dots_px,
-                               const Depth& depth_mm,
-                               Out&& out_mm) {
+Index spatial_dots(const Camera<S>& camera,
+                   const Dots& dots_px,
+                   const Depth& depth_mm,
+                   Out&& out_mm) {
   const auto from = as_view(dots_px);
   const auto depth = as_view(depth_mm);
   const auto to = as_view(std::forward<Out>(out_mm));
   if (!same_size(from, to)) {
-    return {};
+    return -1;
   }
-  SpatialDotsResult result{FrameStatus::ok, 0};
+  Index count = 0;
   for (Index i = 0; i < from.rows(); ++i) {
     for (Index j = 0; j < from.cols(); ++j) {
       const cell_t<Dots> p = from(i, j);
@@ -94,10 +89,10 @@ SpatialDotsResult spatial_dots(const Camera<S>& camera,
       const bool known = is_depth(l);
       to(i, j) = detail::motion::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
                                                                : detail::missing_point<S>());
-      result.found += known ? 1 : 0;
+      count += known ? 1 : 0;
     }
   }
-  return result;
+  return count;
 }
 
 namespace detail {
