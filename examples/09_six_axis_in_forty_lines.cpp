@@ -54,10 +54,9 @@ int main() {
   const fingerpad::StridedView<const Point> border(rim.data(), 1, 36, 36);
   const fingerpad::StridedView<const Point> side_dots(dots.data(), 1, 36, 36);
 
-  const fingerpad::Wrench<> wrench(
-      border, {.base_radius_mm = radius, .side_dot_length_mm = length});  // once
-  auto workspace = wrench.workspace();
-  const auto seen = wrench(Pad(), side_dots, p, workspace);  // every frame
+  fingerpad::Wrench<> wrench(border,
+                             {.base_radius_mm = radius, .side_dot_length_mm = length});  // once
+  const auto seen = wrench(Pad(), side_dots, p);  // every frame
 
   const double fz = -p * pi * touch * touch;
   const double mz = mu_t * turn * 2 * pi * radius * radius;

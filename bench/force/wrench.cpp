@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Six-axis force by every solver; "ns/pixel" is per frame: mesh, side dots, forces. The shape is
-// given.
+// Six-axis force; "ns/pixel" is per frame: lines, side dots, forces. The shape is given.
 // Truth: 24 films pressed flat, dragged and rotated by forces of every direction and size at 5 to
 // 20 kPa. Their force, moment and side dots are known in closed form
-// (tests/support/pressed_pad.hpp), by the law of the rim that ClampedRim uses. "on scenes":
+// (tests/support/pressed_pad.hpp), by the law of a clamped rim. "on scenes":
 // finite-element membranes, which do not follow this law.
 // Errors: of F_z, of F_x and F_y together, M_x and M_y together and M_z, relative to the truth;
-// "residual": rms of eqs. 6 and 7, relative to the force of the pressure; of a mesh: heights of its
-// nodes. "heights in plan": all heights in a disc of 18 mm, with the blur of a frame.
+// "heights in plan": all heights in a disc of 18 mm, with the blur of a frame.
 #include "fingerpad/force/wrench.hpp"
 
 #include <cmath>
@@ -16,14 +14,14 @@
 #include <memory>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene_wrench.hpp"
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/published/wrench.hpp"
-#include "support/by_modulus.hpp"
+#include "fingerpad/published/segment_equilibrium.hpp"
 #include "support/pressed_pad.hpp"
 
 using namespace fingerpad;
@@ -94,10 +92,10 @@ const std::vector<detail::membrane::HeightMap<S>>& shapes() {
 }
 
 struct WrenchErrors {
-  std::vector<double> force_z, force_xy, moment_xy, moment_z, residual;
+  std::vector<double> force_z, force_xy, moment_xy, moment_z;
 
-  template <class S>
-  void add(const WrenchResult<S>& found, const test::Wrench6& truth) {
+  template <class Result>
+  void add(const Result& found, const test::Wrench6& truth) {
     const auto share = [](double x, double y, double true_x, double true_y) {
       return std::hypot(x - true_x, y - true_y) / std::hypot(true_x, true_y);
     };
@@ -107,151 +105,70 @@ struct WrenchErrors {
     force_xy.push_back(share(double(f.x), double(f.y), tf.x, tf.y));
     moment_xy.push_back(share(double(m.x), double(m.y), tm.x, tm.y));
     moment_z.push_back(double(m.z) / tm.z - 1);
-    residual.push_back(double(found.residual));
   }
-  void note(bench::Counters& counters, bool has_residual) const {
+  void note(bench::Counters& counters) const {
     bench::note_errors(counters, "F_z", "share", force_z);
     bench::note_errors(counters, "F_xy", "share", force_xy);
     bench::note_errors(counters, "M_xy", "share", moment_xy);
     bench::note_errors(counters, "M_z", "share", moment_z);
-    if (has_residual) {
-      bench::note_errors(counters, "residual", "of the pressure", residual);
-    }
   }
 };
 
-template <class Solver,
-          class Row = OneRow,
-          class Law = ClampedRim,
-          class Lines = StraightLines,
-          class S = double>
-void add_frame(const std::string& group,
-               const std::string& name,
-               Index columns,
-               Index rows,
-               const Row& row = {}) {
-  using W = test::WrenchBy<Solver, Row, Law, Lines, S>;
-  struct Frame {
-    W wrench;
-    typename W::Workspace work = wrench.workspace();
-    WrenchResult<S> result = {};
-  };
-  WrenchOptions<S> options;
-  options.columns = columns;
-  options.rows = rows;
-  options.blur_mm = S(0.6);
+/// `make(border, length of the side dots in mm, inclination)` gives
+/// force_of(heights, side dots, pressure). The films have no inclination: their rim follows the
+/// chord exactly.
+template <class S, class Make>
+void add_frame(const std::string& group, const std::string& name, const Make& make) {
   std::vector<Image<Point3<S>>> dots;
   for (const Load& load : loads()) {
-    dots.push_back(as<S>(rim_of(load.pad).dots(load, Row::rows)));
+    dots.push_back(as<S>(rim_of(load.pad).dots(load)));
   }
   const auto border = as<S>(rim_of(loads().front().pad).borders());
   const auto& shape = shapes<S>();
-  auto on_scenes = options;
-  on_scenes.side_dot_length_mm = S(Row::rows == 1 ? 0.79995 : 0.8);  // chord, or arc
   const bench::Memory memory;
-  const auto d = std::make_shared<Frame>(Frame{W(border, options, Solver{}, row, Law{})});
+  using ForceOf = decltype(make(border, 0.8, std::optional<double>()));
+  const auto force_of = std::make_shared<ForceOf>(make(border, 0.8, std::nullopt));
   bench::add(
       group + "/" + name, 1, memory.bytes(),
-      [d, dots, &shape] {
-        d->result = d->wrench(shape[0], dots[0], S(loads()[0].pressure_mpa), d->work);
-        benchmark::DoNotOptimize(d->result);
+      [force_of, dots, &shape] {
+        auto result = (*force_of)(shape[0], dots[0], S(loads()[0].pressure_mpa));
+        benchmark::DoNotOptimize(result);
       },
-      [=, &shape, errors = WrenchErrors()](auto& counters) mutable {
-        const W seen(as<S>(test::rim_border()), on_scenes, Solver{}, row, Law{});
-        bench::note_wrench_on_scenes<S>(counters, seen, Row::rows);
-        for (std::size_t k = 0; errors.residual.size() < loads().size(); ++k) {
-          const Load& load = loads()[k];
-          errors.add(d->wrench(shape[k], dots[k], S(load.pressure_mpa), d->work), load.truth());
-        }
-        errors.note(counters, Solver::finds_tensions);
-      });
-}
-
-/// Lines and segments only.
-template <class Lines, class S>
-void add_mesh(const std::string& group, const std::string& name, Index columns, Index rows) {
-  struct Mesh {
-    detail::membrane::Compartments<S> nodes;
-    detail::membrane::Segments<S> segments;
-    Mesh(Index c, Index r) : nodes(c, r, S(18.735), {S(0.4), S(0.6), S(4)}), segments(c, r) {}
-  };
-  const auto& shape = shapes<S>();
-  const bench::Memory memory;
-  const auto d = std::make_shared<Mesh>(columns, rows);
-  const auto lay = [d, &shape](std::size_t k) {
-    d->nodes.template lay<Lines>(shape[k], {S(0), S(0), S(0)});
-    d->segments.measure(d->nodes);
-  };
-  bench::add(
-      group + "/" + name, 1, memory.bytes(),
-      [d, lay] {
-        lay(0);
-        benchmark::DoNotOptimize(d->segments);
-      },
-      [=](auto& counters) {
-        std::vector<double> errors;
+      [=, &shape](auto& counters) {
+        bench::note_wrench_on_scenes<S>(counters, make(as<S>(test::rim_border()), 0.79995, 1.0623));
+        WrenchErrors errors;
         for (std::size_t k = 0; k < loads().size(); ++k) {
-          lay(k);
-          for (Index line = 0; line < columns; ++line) {
-            for (Index r = 1; r <= rows; ++r) {
-              const auto& node = d->nodes.node(line, r);
-              const double away = std::hypot(double(node.x), double(node.y));
-              errors.push_back(double(node.z) - loads()[k].pad.height(away));
-            }
-          }
+          const Load& load = loads()[k];
+          errors.add((*force_of)(shape[k], dots[k], S(load.pressure_mpa)), load.truth());
         }
-        bench::note_errors(counters, "height", "mm", errors);
+        errors.note(counters);
       });
 }
 
-/// As many equations as unknown pulls of the segments at the rim.
-void add_opencv(const std::string& group, Index columns) {
-  struct System {
-    cv::Mat matrix, right, solution;
-  };
-  const auto d = std::make_shared<System>();
-  const int n = static_cast<int>(columns);
-  d->matrix = cv::Mat(n, n, CV_64F);
-  d->right = cv::Mat(n, 1, CV_64F, cv::Scalar(1));
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      d->matrix.at<double>(i, j) = (i == j ? 4 : 0) + std::sin(1.0 + i * j);
-    }
-  }
-  bench::add(
-      group + "/cv::solve, dense, " + std::to_string(n) + " unknowns", 1,
-      static_cast<long>(sizeof(double)) * (n * n + 2 * n),
-      [d] {
-        cv::solve(d->matrix, d->right, d->solution, cv::DECOMP_LU);
-        benchmark::DoNotOptimize(d->solution.data);
-      },
-      [](auto&) {});
+template <class S>
+WrenchOptions<S> options_of(double length_mm, const std::optional<double>& inclination) {
+  return {.side_dot_length_mm = S(length_mm), .stress_free_inclination_rad = inclination};
 }
 
-void add_all(Index columns, Index rows) {
-  const std::string group = std::to_string(columns) + "x" + std::to_string(rows) + " segments";
-  add_frame<published::Iteration, OneRow, published::Direction, published::SteepestLines>(
-      group, "published: iteration, rim, lines", columns, rows);
-  add_mesh<StraightLines, double>(group, "mesh alone", columns, rows);
-  add_mesh<published::SteepestLines, double>(group, "mesh alone, SteepestLines", columns, rows);
-  add_frame<published::Iteration>(group, "published::Iteration", columns, rows);
-  add_frame<published::ClosedForm>(group, "published::ClosedForm", columns, rows);
-  add_frame<BalancedRim>(group, "BalancedRim", columns, rows);
-  add_frame<BalancedRim, OneRow>(group, "BalancedRim, with the inclination", columns, rows, {1.06});
-  add_frame<BalancedRim, TwoRows>(group, "BalancedRim, TwoRows", columns, rows);
-  add_frame<test::KnownModulus>(group, "by_modulus()", columns, rows);
-  add_frame<LeastSquares>(group, "LeastSquares, double, the default", columns, rows);
-  add_frame<LeastSquares, OneRow, published::Direction>(group, "LeastSquares, published::Direction",
-                                                        columns, rows);
-  add_frame<LeastSquares, OneRow, ClampedRim, published::SteepestLines>(
-      group, "LeastSquares, SteepestLines", columns, rows);
-  add_frame<BalancedRim, OneRow, ClampedRim, StraightLines, float>(group, "BalancedRim, float",
-                                                                   columns, rows);
-  add_frame<published::Iteration, OneRow, ClampedRim, StraightLines, float>(
-      group, "published::Iteration, float", columns, rows);
-  add_frame<LeastSquares, OneRow, ClampedRim, StraightLines, float>(group, "LeastSquares, float",
-                                                                    columns, rows);
-  add_opencv(group, columns);
+void add_all(const std::string& group) {
+  const auto by_shape = [](const auto& border, double length, std::optional<double> inclination) {
+    using S = decltype(border(0, 0).x + 0);
+    return Wrench<S>(border, options_of<S>(length, inclination));
+  };
+  const auto by_modulus = [](const auto& border, double length, std::optional<double> inclination) {
+    auto options = options_of<double>(length, inclination);
+    options.modulus_n_per_mm = 0.5;
+    return [w = Wrench<>(border, options)](const auto&, const auto&... frame) mutable {
+      return w.by_modulus(frame...);
+    };
+  };
+  const auto printed = [](const auto& border, double, const auto&) {
+    return published::SegmentEquilibrium<>(border);
+  };
+  add_frame<double>(group, "published: segments", printed);
+  add_frame<double>(group, "by_modulus()", by_modulus);
+  add_frame<double>(group, "double, the default", by_shape);
+  add_frame<float>(group, "float", by_shape);
 }
 
 /// Heights in plan from a depth map of 640 x 480 pixels.
@@ -336,9 +253,8 @@ void add_opencv_heights() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  add_all(36, 30);
-  bench::add_streaming("36x30 segments");
-  add_all(72, 65);
+  add_all("72 side dots");
+  bench::add_streaming("72 side dots");
   add_heights<double>("double");
   add_heights<float>("float");
   add_opencv_heights();

@@ -334,7 +334,6 @@ int main(int argc, char** argv) {
   };
   add("lean", chain::Lean());
   add("default", chain::ByDefault());
-  add("least squares", chain::WithLeastSquares());
   out["samples"] = {in_samples<chain::Lean, 1>("lean", options, frames),
                     in_samples<chain::Lean, 2>("lean", options, frames),
                     in_samples<chain::Lean, 4>("lean", options, frames),

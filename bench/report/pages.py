@@ -33,7 +33,7 @@ METHODS = {
     "spatial_stick_ratio": ("Stick ratio in space", []),
     "contact_slide": ("Contact slide", []),
     "grip_control": ("Grip control", ["closed loop"]),
-    "wrench": ("Six-axis force", ["36x30 segments", "72x65 segments"]),
+    "wrench": ("Six-axis force", ["72 side dots"]),
     "traction": ("Traction", ["frame of 21x21 dots"]),
     "normal_force": ("Normal force", ["one frame, double"]),
     "contact_shift": ("Shift of the contact", ["noise only", "stuck dots"]),
@@ -68,8 +68,7 @@ COMPARED = [
      "published: ObjectMotion", "ObjectMotion, double, the default"),
     ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published policies, float",
      "StickConsensus, ResidualMean, float, the default"),
-    ("force along the pad", "wrench", "36x30 segments", "published: iteration, rim, lines",
-     "LeastSquares, double, the default"),
+    ("force along the pad", "wrench", "72 side dots", "published: segments", "double, the default"),
     ("shift of a rigid contact", "contact_shift", "noise only", "central dot, published",
      "EdgeDots, the default"),
     ("lift of a modelled object", "foam_contact", "lift, 2000 steps",
@@ -230,10 +229,8 @@ together in
 
 {about}
 
-Three chains. **default**: the policies by default, with the published iteration as solver of the
-six-axis force. **least squares**: the same with the default solver. **lean**: what a flat contact on
-a pad with dark dots cannot do without: no placed edge, in samples of 4 x 4 pixels where the others
-have 3 x 3.
+Two chains. **default**: the methods by default. **lean**: what a flat contact on a pad with dark dots
+cannot do without: no placed edge, in samples of 4 x 4 pixels where the other has 3 x 3.
 
 ![Time of each stage](whole_chain/stages.png)
 

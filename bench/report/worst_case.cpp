@@ -327,7 +327,6 @@ int main(int argc, char** argv) {
   };
   add("whole chain, lean", of_chain<chain::Lean>());
   add("whole chain, default", of_chain<chain::ByDefault>());
-  add("whole chain, least squares", of_chain<chain::WithLeastSquares>());
   add("depth, every pixel", of_depth());
   add("contact region, every pixel", of_contact_region());
   add("gel contact", of_gel(false));

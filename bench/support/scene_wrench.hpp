@@ -33,19 +33,18 @@ const fingerpad::detail::membrane::HeightMap<S>& scene_heights(const std::string
   return all.emplace(name, map).first->second;
 }
 
-/// Notes errors named "... on scenes"; `rows` is the number of rows of side dots.
+/// Notes errors named "... on scenes" of `force_of(heights, side dots, pressure)`.
 template <class S, class W>
-void note_wrench_on_scenes(Counters& counters, const W& wrench, fingerpad::Index rows) {
-  auto workspace = wrench.workspace();
+void note_wrench_on_scenes(Counters& counters, W force_of) {
   std::vector<double> along, normal, tilting, turning;
   for (const test::WrenchFrame& f : test::wrench_frames()) {
-    const auto exact = test::rows_of(f.dots, rows);
+    const auto exact = test::rows_of(f.dots, 1);
     test::Image<fingerpad::Point3<S>> dots(exact.rows(), exact.cols(), {S(0), S(0), S(0)});
     for (std::size_t k = 0; k < exact.cells.size(); ++k) {
       const auto& p = exact.cells[k];
       dots.cells[k] = {S(p.x), S(p.y), S(p.z)};
     }
-    const auto r = wrench(scene_heights<S>(f.heights), dots, S(f.pressure_mpa), workspace);
+    const auto r = force_of(scene_heights<S>(f.heights), dots, S(f.pressure_mpa));
     const auto add = [&](std::vector<double>& to, double error, double largest) {
       if (largest > 0.1) {
         to.push_back(r.ok() ? error / largest : std::nan(""));

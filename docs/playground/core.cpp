@@ -78,7 +78,6 @@ constexpr double dot_noise_px = 0.06;  ///< of a dot finder
 
 struct Methods : fingerpad::FingertipMethods {
   static constexpr bool has_look_up = false;
-  using Solver = fingerpad::BalancedRim;
 };
 using Reference = fingerpad::DepthReference<float>;
 using Options = fingerpad::FingertipOptions;

@@ -255,7 +255,7 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
                  "there is no such file (it holds the dots beside the rim)");
   }
   fingerpad::RimCalibration<> calibration(side->border_mm, noise.base_radius_mm,
-                                          {noise.inclination_rad});
+                                          noise.inclination_rad);
   const bool finds_rubber = noise.stress_free_height_mm > 0;
   const auto apexes = finds_rubber ? apexes_of(recording / "apex.csv") : std::map<int, double>();
   add_levels(

@@ -184,7 +184,7 @@ void write_pad(const Path& folder, Noise& noise) {
   write_text(folder / "presses.csv", presses);
 }
 
-/// Writes side dots of the free pad at four pressures, by the law of rim_traction.hpp with length
+/// Writes side dots of the free pad at four pressures, by the law of force/wrench.hpp with length
 /// 0.8 mm and mu t = 0.5 N/mm.
 void write_rim(const Path& folder, Noise& noise) {
   std::filesystem::create_directories(folder);

@@ -17,7 +17,6 @@ namespace python {
 namespace {
 
 using fingerpad::FingertipResult;
-using fingerpad::OneRow;
 using fingerpad::SpatialStickTest;
 using Reference = fingerpad::DepthReference<float>;
 /// Depth at every pixel, because Python reads whole arrays.
@@ -81,7 +80,6 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const fingerpad::ContactTest& contact,
                                 const SpatialStickTest& stick,
                                 const WrenchOptions& wrench,
-                                const OneRow& side_dots,
                                 const std::optional<NormalForce>& force_of_area,
                                 const std::optional<NormalForce>& force_of_depth,
                                 const std::optional<Shear>& shear,
@@ -95,7 +93,6 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.contact = contact;
   options.stick = stick;
   options.wrench = wrench;
-  options.side_dot_row = side_dots;
   options.force_of_area = force_of_area;
   options.force_of_depth = force_of_depth;
   options.shear = shear;
@@ -266,10 +263,10 @@ void bind_fingertip(py::module_& module) {
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
            py::arg("free_dots_mm"), py::arg("rim_mm"),
            py::arg("contact") = fingerpad::ContactTest(), py::arg("stick") = SpatialStickTest(),
-           py::arg("wrench") = WrenchOptions(), py::arg("side_dots") = OneRow(),
-           py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
-           py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
-           py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
+           py::arg("wrench") = WrenchOptions(), py::arg("force_of_area") = py::none(),
+           py::arg("force_of_depth") = py::none(), py::arg("shear") = py::none(),
+           py::arg("shear_by_depth") = false, py::arg("smoothing_px") = py::int_(29),
+           py::arg("dot_radius_px") = py::float_(0.0),
            "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
            "(0, 0, 3): no results from dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
            "fixed; (0, 0, 3): no six-axis force. force_of_area, force_of_depth: NormalForce;\n"

@@ -315,11 +315,11 @@ def test_frames_have_the_bits_of_cpp(tmp_path):
     pad, estimate = (camera, fluid, reference), fp.DepthEstimator(camera, fluid, reference)
     rim, dots = side_dots()
     test = fp.ContactTest(threshold_per_mm=0.025, free_apex_mm=13.03)
-    options = fp.WrenchOptions(base_radius_mm=18.735, side_dot_length_mm=0.79995)
-    row = fp.OneRow(stress_free_inclination_rad=1.0618)
+    options = fp.WrenchOptions(base_radius_mm=18.735, side_dot_length_mm=0.79995,
+                               stress_free_inclination_rad=1.0618)
     region = fp.ContactRegion(pad[0], 480, 480, test)
-    wrench = fp.Wrench(pad[0], 480, 480, rim, options, row)
-    fingertip = fp.Fingertip(*pad, NO_DOTS_MM, rim, test, wrench=options, side_dots=row)
+    wrench = fp.Wrench(pad[0], 480, 480, rim, options)
+    fingertip = fp.Fingertip(*pad, NO_DOTS_MM, rim, test, wrench=options)
     for k, pressure_mpa in enumerate(signals["pressure_mpa"]):
         red, green = channels(picture(f"frames/{k:06}.png"))
         depth, _, _ = estimate(red, green)

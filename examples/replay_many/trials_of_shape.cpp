@@ -133,8 +133,8 @@ Trial rubber() {
     return drawn;
   };
   const auto fit = [=](const Frames& seen) {
-    const fingerpad::OneRow row{2 * std::atan(height_mm / RubberFrame::base_mm)};
-    fingerpad::RimCalibration<> calibration(border, RubberFrame::base_mm, row);
+    fingerpad::RimCalibration<> calibration(border, RubberFrame::base_mm,
+                                            2 * std::atan(height_mm / RubberFrame::base_mm));
     for (const RubberFrame& frame : seen) {
       (void)calibration.add(frame.level, frame.dots_mm, frame.pressure_mpa, frame.apex_mm);
     }

@@ -115,8 +115,8 @@ PLANTED = {
     "a row with an empty cell": ("docs/classes.md",
         "\n| `Wrench` |  | [a](depth/depth.md) | `Camera` | `DepthResult` | [a](a.md) | [a](a.md) | [a](a.md) |\n"),
     "a printed form that is not there": ("docs/errata.md",
-        '\n| 99 | it | `published::Planted` | that | [a](../tests/published/wrench.cpp) "a" |\n'),
-    "a printed class without a row": ("include/fingerpad/published/wrench.hpp", "\nclass Planted {\n};\n"),
+        '\n| 99 | it | `published::Planted` | that | [a](../tests/published/segment_equilibrium.cpp) "a" |\n'),
+    "a printed class without a row": ("include/fingerpad/published/segment_equilibrium.hpp", "\nclass Planted {\n};\n"),
     "a field without a comment": ("docs/classes.md", None),
 }
 

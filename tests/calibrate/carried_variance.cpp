@@ -97,10 +97,9 @@ WrenchResult<S> wrench_of(const test::WrenchFrame& frame, const std::array<S, 2>
   };
   WrenchOptions<S> options;
   options.side_dot_length_mm = p[0];
-  const Wrench<BalancedRim, OneRow, ClampedRim, StraightLines, S> wrench(
-      as_dual(test::rim_border()), options);
-  auto work = wrench.workspace();
-  return wrench(heights, as_dual(frame.dots), p[1], work);
+  options.stress_free_inclination_rad = 1.0623;
+  Wrench<S> wrench(as_dual(test::rim_border()), options);
+  return wrench(heights, as_dual(frame.dots), p[1]);
 }
 
 /// A camera's distance, index, center (x, y) and pitch.

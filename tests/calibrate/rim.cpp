@@ -136,8 +136,7 @@ FreePad finite_element_pad() {
   return pad;
 }
 
-template <class Rows>
-void add_all(const FreePad& pad, RimCalibration<Rows>& calibration) {
+void add_all(const FreePad& pad, RimCalibration<>& calibration) {
   for (std::size_t k = 0; k < pad.dots.size(); ++k) {
     REQUIRE(calibration.add(k, grid_of(pad.dots[k]), pad.pressures[k]));
   }
@@ -171,10 +170,6 @@ TEST_CASE("rim calibration: a rim that follows the law is found exactly", "[wren
         }
         CHECK(fit.residual < 1e-10);
         CHECK(fit.share_scatter < 1e-9);
-        CHECK(fit.missing == 0);
-        CHECK(fit.stretch[0] == Approx(pad.stretch(pressures[0])));
-        CHECK(fit.stretch[1] == Approx(pad.stretch(pressures[1])));
-        CHECK(fit.condition > 1);
         CHECK(std::isnan(fit.correlation));  // two levels have no residual
 
         CHECK(calibration.fit_modulus(fit.length_mm).modulus_n_per_mm ==
@@ -188,56 +183,12 @@ TEST_CASE("rim calibration: a rim that follows the law is found exactly", "[wren
   }
 }
 
-TEST_CASE("rim calibration: two rows of side dots", "[wrench]") {
-  const Pad pad;
-  RimCalibration<TwoRows> calibration(grid_of(pad.border()), radius_mm);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double p = four_pressures[k];
-    auto dots = pad.dots(p);
-    CHECK_FALSE(calibration.add(k, grid_of(dots), p));  // one row only
-    // bent: the second row falls short by twice the error of the first row's derivative
-    auto second = pad.dots(p, 2);
-    for (std::size_t j = 0; j < dots.size(); ++j) {
-      dots[j].z -= 0.01;
-      second[j].z -= 0.04;
-    }
-    dots.insert(dots.end(), second.begin(), second.end());
-    CHECK(calibration.add(k, grid_of(dots, 2), p));
-  }
-  const auto fit = calibration.fit();
-  CHECK(fit.modulus_n_per_mm == Approx(0.5).epsilon(1e-9));
-  CHECK(fit(3) == Approx(pad.dot_length(3)).epsilon(1e-9));
-}
-
-TEST_CASE("rim calibration: the noise of a second row counts as the derivative weighs it",
-          "[wrench]") {
-  // Straight side dots: (4 x1 - x2) / 2 is the chord of the first row, with sqrt(4^2 + 1) / 2 times
-  // the noise of one dot.
-  const Pad pad;
-  RimCalibration<OneRow> one(grid_of(pad.border()), radius_mm);
-  RimCalibration<TwoRows> two(grid_of(pad.border()), radius_mm);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double p = four_pressures[k];
-    Row dots = pad.dots(p);
-    const Row second = pad.dots(p, 2);
-    REQUIRE(one.add(k, grid_of(dots), p));
-    dots.insert(dots.end(), second.begin(), second.end());
-    REQUIRE(two.add(k, grid_of(dots, 2), p));
-  }
-  const RimFitOptions noise = {.side_dot_noise_mm = 0.004, .pressure_noise_mpa = 0};
-  const auto from_one = one.fit(noise), from_two = two.fit(noise);
-  const double times = std::sqrt(17.0) / 2;
-  CHECK(from_two.length_sd_mm == Approx(times * from_one.length_sd_mm).epsilon(1e-6));
-  CHECK(from_two.modulus_sd_n_per_mm == Approx(times * from_one.modulus_sd_n_per_mm).epsilon(1e-6));
-}
-
 TEST_CASE("rim calibration: units and the order of levels and dots do not matter", "[wrench]") {
   const Pad pad;
   const auto fit = calibration_of(pad, four_pressures).fit();
   const auto backward = calibration_of(pad, {0.020, 0.016, 0.012, 0.008}).fit();
   CHECK(backward.length_mm == Approx(fit.length_mm).epsilon(1e-12));
   CHECK(backward.modulus_n_per_mm == Approx(fit.modulus_n_per_mm).epsilon(1e-12));
-  CHECK(backward.stretch[0] == Approx(fit.stretch[3]));
 
   // columns in the opposite order, or with another first column
   const auto rotated = [](Row row) {
@@ -305,7 +256,6 @@ TEST_CASE("rim calibration: dots that are missing now and then", "[wrench]") {
     }
   }
   const auto fit = calibration.fit();
-  CHECK(fit.missing == 8);
   CHECK(fit.modulus_n_per_mm == Approx(0.5).epsilon(1e-9));
   for (int j = 0; j < pad.columns; ++j) {
     CHECK(fit(j) == Approx(pad.dot_length(j)).epsilon(1e-9));
@@ -368,7 +318,6 @@ TEST_CASE("rim calibration: standard errors are those of repeated measurements",
   const auto two = calibration_of(pad, {0.01, 0.02}).fit();
   CHECK(std::isnan(two.length_sd_mm));
   CHECK(std::isnan(two.modulus_sd_n_per_mm));
-  CHECK(is_finite(two.condition));
 }
 
 TEST_CASE("rim calibration: standard errors do not depend on where the x axis points", "[wrench]") {
@@ -416,12 +365,10 @@ TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrenc
       return to;
     };
     WrenchOptions<Dual> options{.base_radius_mm = Dual(radius_mm), .side_dot_length_mm = p[0]};
-    options.calibrated_modulus_n_per_mm = p[1];
+    options.modulus_n_per_mm = p[1];
     const auto rim = as_dual(border), dots = as_dual(dragged);
-    const Wrench<BalancedRim, OneRow, ClampedRim, StraightLines, Dual> wrench(grid_of(rim),
-                                                                              options);
-    auto work = wrench.workspace();
-    const auto r = wrench.by_modulus(grid_of(dots), Dual(0.016), work);
+    Wrench<Dual> wrench(grid_of(rim), options);
+    const auto r = wrench.by_modulus(grid_of(dots), Dual(0.016));
     REQUIRE(r.ok());
     return std::array{r.force_n.x,     r.force_n.y,     r.force_n.z,
                       r.moment_n_mm.x, r.moment_n_mm.y, r.moment_n_mm.z};
@@ -470,8 +417,7 @@ TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {
   CHECK(calibration.fit_modulus(0.79995).modulus_n_per_mm == Approx(0.5135).margin(1e-3));
 
   // extrapolated to the rim: the unstressed cap is 11 mm high
-  RimCalibration<OneRow> at_rim(grid_of(pad.border), radius_mm,
-                                {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
+  RimCalibration<> at_rim(grid_of(pad.border), radius_mm, 2 * std::atan(11 / radius_mm));
   add_all(pad, at_rim);
   const auto fit = at_rim.fit();
   CHECK(fit.length_mm == Approx(0.79995).margin(4e-4));
@@ -482,7 +428,7 @@ TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {
 
 TEST_CASE("rim calibration: float", "[wrench]") {
   const Pad pad;
-  RimCalibration<OneRow, float> calibration(grid_of(pad.border<float>()), 18.735F);
+  RimCalibration<float> calibration(grid_of(pad.border<float>()), 18.735F);
   for (std::size_t k = 0; k < 4; ++k) {
     CHECK(calibration.add(k, grid_of(pad.dots<float>(four_pressures[k])),
                           static_cast<float>(four_pressures[k])));
@@ -500,8 +446,7 @@ TEST_CASE("rim calibration: float", "[wrench]") {
     return points;
   };
   const auto border = narrow(free.border);
-  RimCalibration<OneRow, float> at_rim(
-      grid_of(border), 18.735F, {.stress_free_inclination_rad = 2 * std::atan(11 / radius_mm)});
+  RimCalibration<float> at_rim(grid_of(border), 18.735F, 2 * std::atan(11 / radius_mm));
   for (std::size_t k = 0; k < 4; ++k) {
     const auto dots = narrow(free.dots[k]);
     CHECK(at_rim.add(k, grid_of(dots), static_cast<float>(free.pressures[k])));
@@ -522,7 +467,7 @@ TEST_CASE("rim calibration: other numbers, here of fifty digits", "[wrench]") {
     const int x[] = {1, 1, 0, -1, -1, -1, 0, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1};
     border.push_back({S(radius * c * x[j]), S(radius * c * y[j]), S(0)});
   }
-  RimCalibration<OneRow, S> calibration(grid_of(border), radius);
+  RimCalibration<S> calibration(grid_of(border), radius);
   for (std::size_t k = 0; k < 3; ++k) {
     const S lambda = S(1) + S(static_cast<double>(k + 1)) / 20;
     auto dots = border;
@@ -551,11 +496,9 @@ TEST_CASE("rim calibration: what it refuses", "[wrench]") {
   CHECK(begins_with(refusal([&] { const RimCalibration<> refused(grid_of(border), none); }),
                     owner + "base_radius_mm = "));
   CHECK(refusal([&] { const RimCalibration<> refused(grid_of(border), 30); }) != "accepted");
-  CHECK(begins_with(refusal([&] {
-                      const RimCalibration<> refused(grid_of(border), radius_mm,
-                                                     OneRow{not_a_number<double>()});
-                    }),
-                    "OneRow: stress_free_inclination_rad = "));
+  CHECK(begins_with(
+      refusal([&] { const RimCalibration<> refused(grid_of(border), radius_mm, none); }),
+      owner + "stress_free_inclination_rad = "));
 
   // unusable frames: nothing is added
   RimCalibration<> calibration(grid_of(border), radius_mm);

@@ -64,12 +64,7 @@ void require_sound(const Result& touch) {
 }
 
 void try_fingertip(Input& in) {
-  static const auto options = [] {
-    auto few_lines = frames().options();  // an execution is short
-    few_lines.wrench.columns = 9;
-    few_lines.wrench.rows = 4;
-    return few_lines;
-  }();
+  static const auto options = frames().options();
   using Tip = Fingertip<>;
   static const Tip start(options);
   static Tip tip = start;

@@ -14,7 +14,6 @@
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
@@ -84,11 +83,9 @@ struct Frame {
   }
 };
 
-template <class Solver>
 WrenchResult<double> seen(const Frame& frame) {
-  const Wrench<Solver> wrench(frame.border, frame.options);
-  auto workspace = wrench.workspace();
-  return wrench(frame.shape, frame.dots, frame.pressure_mpa, workspace);
+  Wrench<> wrench(frame.border, frame.options);
+  return wrench(frame.shape, frame.dots, frame.pressure_mpa);
 }
 
 struct WrenchMistake {
@@ -99,63 +96,63 @@ struct WrenchMistake {
 
 const std::vector<WrenchMistake> wrench_mistakes = {
     {"none", [](Frame&) {}, "ok"},
-    {"pressure in kPa", [](Frame& f) { f.pressure_mpa *= 1e3; }, "pressure not in MPa"},
-    {"pressure in Pa", [](Frame& f) { f.pressure_mpa *= 1e6; }, "pressure not in MPa"},
-    {"pressure in bar", [](Frame& f) { f.pressure_mpa *= 10; },
-     "modulus not as calibrated: absolute pressure?"},
-    {"absolute pressure", [](Frame& f) { f.pressure_mpa += 0.101325; },
-     "modulus not as calibrated: absolute pressure?"},
+    {"pressure in kPa", [](Frame& f) { f.pressure_mpa *= 1e3; }, "bad pressure"},
+    {"pressure in Pa", [](Frame& f) { f.pressure_mpa *= 1e6; }, "bad pressure"},
+    {"pressure in bar", [](Frame& f) { f.pressure_mpa *= 10; }, "pad has changed"},
+    {"absolute pressure", [](Frame& f) { f.pressure_mpa += 0.101325; }, "pad has changed"},
     {"pressure below that of the air", [](Frame& f) { f.pressure_mpa = -0.01; }, "bad pressure"},
-    {"no pressure", [](Frame& f) { f.pressure_mpa = test::nan; }, "bad pressure"},
+    {"no pressure and no modulus",
+     [](Frame& f) { f.pressure_mpa = test::nan, f.options.modulus_n_per_mm.reset(); },
+     "bad pressure"},
     {"side dots shifted by one", [](Frame& f) { f.reorder([](Index k) { return k + 1; }); },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots the other way round", [](Frame& f) { f.reorder([](Index k) { return -k; }); },
-     "side dots in another order"},
+     "bad side dots"},
     {"two halves of the side dots exchanged",
-     [](Frame& f) { f.reorder([](Index k) { return k + 36; }); }, "side dots in another order"},
+     [](Frame& f) { f.reorder([](Index k) { return k + 36; }); }, "bad side dots"},
     {"neighbouring side dots exchanged",
      [](Frame& f) { f.reorder([](Index k) { return k % 2 == 0 ? k + 1 : k - 1; }); },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots below the base",
      [](Frame& f) { f.each_dot([](const Vector& p) {
                       return Vector{p.x, p.y, -p.z};
                     }); },
-     "side dots below the base"},
+     "bad side dots"},
     {"x and y of the side dots exchanged",
      [](Frame& f) { f.each_dot([](const Vector& p) {
                       return Vector{p.y, p.x, p.z};
                     }); },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots in metres", [](Frame& f) { f.each_dot([](const Vector& p) { return 1e-3 * p; }); },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots in px",
      [](Frame& f) {
        f.each_dot([](const Vector& p) { return Vector{320 + 12 * p.x, 240 + 12 * p.y, p.z}; });
      },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots as (0, 0, 0) where they are lost",
      [](Frame& f) {
        for (Index k = 0; k < 30; ++k) {
          f.dots(0, k) = {0, 0, 0};
        }
      },
-     "side dots in another order"},
+     "bad side dots"},
     {"side dots of the free pad without pressure",
      [](Frame& f) { f.dots = f.rim.dots([](double) {
                       return test::RimLoad{0, 0};
                     }); },
-     "unstretched"},
+     "bad side dots"},
     {"a side dot as far away as numbers go", [](Frame& f) { f.dots(0, 7).x = 1.7e308; }, "ok"},
     {"side dots times 1e300",
-     [](Frame& f) { f.each_dot([](const Vector& p) { return 1e300 * p; }); }, "too few side dots"},
-    {"pressure of 1e300", [](Frame& f) { f.pressure_mpa = 1e300; }, "pressure not in MPa"},
+     [](Frame& f) { f.each_dot([](const Vector& p) { return 1e300 * p; }); }, "bad side dots"},
+    {"pressure of 1e300", [](Frame& f) { f.pressure_mpa = 1e300; }, "bad pressure"},
     {"length of the side dots in metres", [](Frame& f) { f.options.side_dot_length_mm *= 1e-3; },
-     "side dots in another order"},
+     "bad side dots"},
     {"length of the side dots twice as long", [](Frame& f) { f.options.side_dot_length_mm *= 2; },
-     "unstretched"},
+     "bad side dots"},
     {"length of the side dots half as long", [](Frame& f) { f.options.side_dot_length_mm /= 2; },
-     "modulus not as calibrated: absolute pressure?"},
-    {"depth in metres", [](Frame& f) { f.shape.height = f.shape.slope = 1e-3; }, "shape not in mm"},
+     "pad has changed"},
+    {"depth in metres", [](Frame& f) { f.shape.height = f.shape.slope = 1e-3; }, "no shape"},
     {"depth in um", [](Frame& f) { f.shape.height = f.shape.slope = 1e3; }, "no shape"},
     {"no depth anywhere",
      [](Frame& f) {
@@ -163,7 +160,7 @@ const std::vector<WrenchMistake> wrench_mistakes = {
        f.shape.touches = false;
      },
      "no shape"},
-    {"depth upside down", [](Frame& f) { f.shape.height = f.shape.slope = -1; }, "shape not in mm"},
+    {"depth upside down", [](Frame& f) { f.shape.height = f.shape.slope = -1; }, "no shape"},
     {"another frame's size",
      [](Frame& f) {
        f.dots = Image<Vector>(1, 71, {0, 0, 0});
@@ -183,71 +180,36 @@ TEST_CASE("mistakes with the six-axis force", "[mistakes]") {
     INFO(m.mistake);
     Frame frame;
     // the modulus is that of calibrate/rim.hpp
-    frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+    frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
     m.make(frame);
-    const auto squares = seen<LeastSquares>(frame), balanced = seen<BalancedRim>(frame);
-    CHECK(name_of(squares.status) == m.said);
-    CHECK(name_of(balanced.status) == m.said);
-    CHECK(squares.ok() == (m.said == "ok"));
-    CHECK(is_finite(squares.force_n) == squares.ok());
-    CHECK(is_finite(balanced.force_n) == balanced.ok());
+    const auto r = seen(frame);
+    CHECK(name_of(r.status) == m.said);
+    CHECK(r.ok() == (m.said == "ok"));
+    CHECK(is_finite(r.force_n) == r.ok());
   }
 }
 
-TEST_CASE("mistakes with the six-axis force: a calibrated rim brings its modulus", "[mistakes]") {
+TEST_CASE("mistakes with the six-axis force: a calibrated modulus", "[mistakes]") {
   Frame frame;
-  RimFit<double> fit{};
-  fit.length_mm = frame.rim.length_mm;
-  fit.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
-  fit.side_dot_share.assign(72, 1.0);
-  const Wrench<> wrench(frame.border, fit, frame.options);
-  auto workspace = wrench.workspace();
+  frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+  Wrench<> wrench(frame.border, frame.options);
   const auto at = [&](double pressure_mpa) {
-    return wrench(frame.shape, frame.dots, pressure_mpa, workspace).status;
+    return wrench(frame.shape, frame.dots, pressure_mpa).status;
   };
   CHECK(at(0.01) == WrenchStatus::ok);
-  CHECK(at(0.01 + 0.101325) == WrenchStatus::modulus_not_as_calibrated);
+  CHECK(at(0.01 + 0.101325) == WrenchStatus::pad_has_changed);
   // undetectable without a calibration: a stiffer membrane at a higher pressure looks the same
-  const Wrench<> knows_no_modulus(frame.border, frame.options);
-  CHECK(knows_no_modulus(frame.shape, frame.dots, 0.01 + 0.101325, workspace).ok());
+  frame.options.modulus_n_per_mm.reset();
+  Wrench<> knows_no_modulus(frame.border, frame.options);
+  CHECK(knows_no_modulus(frame.shape, frame.dots, 0.01 + 0.101325).ok());
 }
 
-TEST_CASE("mistakes with the six-axis force: two rows of side dots exchanged", "[mistakes]") {
-  Frame frame;
-  const auto load = [](double) { return test::RimLoad{0.2, 0}; };
-  const Wrench<BalancedRim, TwoRows> wrench(frame.border, frame.options);
-  auto workspace = wrench.workspace();
-  const auto right = frame.rim.dots(load, 2);
-  auto exchanged = right;
-  for (Index k = 0; k < right.cols(); ++k) {
-    exchanged(0, k) = right(1, k);
-    exchanged(1, k) = right(0, k);
-  }
-  CHECK(wrench(frame.shape, right, 0.01, workspace).ok());
-  CHECK(wrench(frame.shape, exchanged, 0.01, workspace).status ==
-        WrenchStatus::side_dots_in_another_order);
-}
-
-TEST_CASE("mistakes with the six-axis force: shape and side dots of two pads", "[mistakes]") {
-  // a pad three times as high, and pulls in four lobes, which cannot balance such a shape
-  Frame frame;
-  frame.shape.height = frame.shape.slope = 3;
-  const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
-  frame.dots = frame.rim.dots([&](double at) {
-    return test::RimLoad{tension * (1 + 0.9 * std::cos(2 * at)), 0.8 * tension * std::sin(2 * at)};
-  });
-  CHECK(seen<LeastSquares>(frame).status == WrenchStatus::unbalanced);
-  frame.options.max_residual = 10;
-  CHECK(seen<LeastSquares>(frame).residual > 0.1);
-}
-
-TEST_CASE("mistakes with the six-axis force: what the residual does not see, the modulus tells",
-          "[mistakes]") {
+TEST_CASE("mistakes with the six-axis force: what the modulus tells", "[mistakes]") {
   const auto solved = [](const std::function<void(Frame&)>& change) {
     Frame frame;
-    frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+    frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
     change(frame);
-    return seen<LeastSquares>(frame);
+    return seen(frame);
   };
   const auto right = solved([](Frame&) {});
   REQUIRE(right.ok());
@@ -281,11 +243,12 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
   const auto longer = solved(aged(1, 1.05));
   CHECK(longer.status == WrenchStatus::pad_has_changed);
   CHECK(longer.has_force());
-  CHECK(longer.residual < 0.001);
   CHECK(longer.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
-  CHECK(longer.force_n.x / right.force_n.x == Approx(0.53).margin(0.01));
+  CHECK(longer.force_n.x / right.force_n.x == Approx(0.54).margin(0.01));
   CHECK(modulus(longer) == Approx(0.5).margin(0.01));
-  CHECK(solved(aged(1, 1.2)).status == WrenchStatus::modulus_not_as_calibrated);
+  const auto longest = solved(aged(1, 1.2));
+  CHECK(longest.status == WrenchStatus::pad_has_changed);
+  CHECK_FALSE(longest.has_force());
   // undetected: the error of F_xy is within the bound
   for (const double length : {0.96, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.04}) {
     const auto r = solved(aged(1, length));
@@ -297,13 +260,11 @@ TEST_CASE("mistakes with the six-axis force: what the residual does not see, the
   }
   // a gauge that reads a fifth too much
   const auto pressed = solved([](Frame& f) { f.pressure_mpa *= 1.2; });
-  CHECK(pressed.residual < 0.001);
   CHECK(modulus(pressed) == Approx(1.2).epsilon(1e-3));
   // slopes with an error of a fifth have almost no effect; heights have a little, undetected
   for (const double off : {0.8, 1.2}) {
     CHECK(shifted(solved([=](Frame& f) { f.shape.slope = off; })) < 0.001);
     const auto r = solved([=](Frame& f) { f.shape.height = f.shape.slope = off; });
-    CHECK(r.residual < 0.001);
     CHECK(shifted(r) < 0.03);
     CHECK(modulus(r) == Approx(1).epsilon(0.002));
   }
@@ -313,7 +274,7 @@ TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membra
           "[mistakes]") {
   // the same frame with its pressure and shape shows it: pad_has_changed
   Frame frame;
-  frame.options.calibrated_modulus_n_per_mm = frame.rim.modulus_n_per_mm;
+  frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
   const auto loaded = [&](double stiffer, double longer) {
     auto rim = frame.rim;
     rim.modulus_n_per_mm *= stiffer;
@@ -324,20 +285,14 @@ TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membra
                            tension * (0.1 - 0.1 * std::sin(at))};
     });
   };
-  const Wrench<BalancedRim> wrench(frame.border, frame.options);
-  // without a modulus there is no comparison
-  WrenchOptions<double> without = frame.options;
-  without.calibrated_modulus_n_per_mm.reset();
-  const Wrench<BalancedRim> any_pad(frame.border, without);
-  auto workspace = wrench.workspace();
+  Wrench<> wrench(frame.border, frame.options);
   const auto told = [&](double stiffer, double longer) {
     const auto dots = loaded(stiffer, longer);
-    const auto by_modulus = wrench.by_modulus(dots, frame.pressure_mpa, workspace);
-    const auto by_rim =
-        pressure_from_rim(any_pad, frame.shape, dots, frame.rim.modulus_n_per_mm, workspace);
+    const auto by_modulus = wrench.by_modulus(dots, frame.pressure_mpa);
+    const auto by_rim = wrench(frame.shape, dots, test::nan);  // without a gauge
     CHECK(by_modulus.ok());
     CHECK(by_rim.ok());
-    CHECK(wrench(frame.shape, dots, frame.pressure_mpa, workspace).ok() == (stiffer * longer == 1));
+    CHECK(wrench(frame.shape, dots, frame.pressure_mpa).ok() == (stiffer * longer == 1));
     return std::array{by_modulus.force_n.x, by_rim.force_n.x, by_rim.pressure_mpa};
   };
   const auto right = told(1, 1), stiffer = told(2, 1), longer = told(1, 1.05);
@@ -350,16 +305,11 @@ TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membra
 
 TEST_CASE("mistakes with the six-axis force: a modulus of another unit", "[mistakes]") {
   const Frame frame;
-  const Wrench<BalancedRim> wrench(frame.border, frame.options);
-  auto workspace = wrench.workspace();
   for (const double modulus : {500.0, 0.0005, 0.5e6}) {  // N/m, kN/mm, N/km
     WrenchOptions<double> options = frame.options;
-    options.calibrated_modulus_n_per_mm = modulus;
-    CHECK(test::begins_with(
-        test::refusal([&] { const Wrench<BalancedRim> r(frame.border, options); }),
-        "WrenchOptions: calibrated_modulus_n_per_mm = "));
-    CHECK(pressure_from_rim(wrench, frame.shape, frame.dots, modulus, workspace).status ==
-          WrenchStatus::refused);
+    options.modulus_n_per_mm = modulus;
+    CHECK(test::begins_with(test::refusal([&] { const Wrench<> r(frame.border, options); }),
+                            "WrenchOptions: modulus_n_per_mm = "));
   }
 }
 
@@ -829,7 +779,7 @@ TEST_CASE("mistakes with the divergence of the dots", "[mistakes]") {
 
 TEST_CASE("one convention of signs: a press", "[mistakes]") {
   // a vector is the force of the object on the pad, z toward the object; a normal force > 0 presses
-  const auto wrench = seen<LeastSquares>(Frame());
+  const auto wrench = seen(Frame());
   CHECK(wrench.force_n.z < 0);
   CHECK(wrench.normal_force_n() == -wrench.force_n.z);
   const auto scene = test::traction_scene("press");

@@ -74,8 +74,7 @@ void check_same(A& a, B& b) {
 
 TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
                    "[chain]",
-                   (InSamples<ByDefault, 2>),
-                   (InSamples<WithLeastSquares, 2>)) {  // windows are half the default width
+                   (InSamples<ByDefault, 2>)) {  // windows are half the default width
   const Run<TestType> run;
   const auto& first = frames()[0];
   for (std::size_t k = 0; k < run.results.size(); ++k) {

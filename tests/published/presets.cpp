@@ -4,13 +4,10 @@
 // it is the method as printed.
 #include <array>
 #include <cmath>
-#include <vector>
 
-#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
-#include "fingerpad/published/wrench.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 
@@ -87,26 +84,4 @@ TEST_CASE("published pre-slip rules: what makes a pair", "[published]") {
   CHECK_FALSE(alarm_by(optimise, was, other, was));
   CHECK(alarm_by(lift, was, was, moved));
   CHECK(alarm_by(lift, was, moved, was));
-}
-
-TEST_CASE("published wrench: its columns and rows, and what it refuses", "[published]") {
-  const auto options = published::wrench_options();
-  CHECK(options.columns == 72);
-  CHECK(options.rows == 65);
-  std::vector<Point3<double>> rim;
-  for (int k = 0; k < 36; ++k) {
-    const double angle = 3.14159265358979 * k / 18;
-    rim.push_back({18 * std::cos(angle), 18 * std::sin(angle), 0});
-  }
-  const StridedView<const Point3<double>> border(rim.data(), 1, 36, 36);
-  auto with_length = options;
-  with_length.base_radius_mm = 18;
-  with_length.side_dot_length_mm = 0.8;
-  const auto wrench = published::wrench(border, with_length);
-  auto workspace = wrench.workspace();
-  const PadHeights<>::Map nowhere(19.5, 0.5);
-  const StridedView<const Point3<double>> few(rim.data(), 1, 35, 35);
-  const auto refused = wrench(nowhere, few, 0.01, workspace);
-  CHECK(refused.status == WrenchStatus::refused);
-  CHECK_FALSE(refused.ok());
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "pad.hpp"
 #include "soap_film.hpp"
@@ -220,10 +221,8 @@ Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
 constexpr double pressed_mpa = 0.01;
 
 template <class S = double>
-fingerpad::WrenchOptions<S> exact_options(Index columns = 72, Index rows = 65) {
+fingerpad::WrenchOptions<S> exact_options() {
   fingerpad::WrenchOptions<S> options;
-  options.columns = columns;
-  options.rows = rows;
   options.line_step_mm = S(0.1);
   options.blur_mm = S(0);
   options.reach_mm = S(1);

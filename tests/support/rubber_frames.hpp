@@ -117,15 +117,14 @@ struct RubberGain {
 
 /// Slope from frames, three of each of the three steps that have shapes.
 template <class W>
-RubberGain gain_from_frames(const W& wrench, RubberFrames& frames) {
-  auto work = wrench.workspace();
+RubberGain gain_from_frames(W wrench, RubberFrames& frames) {
   double force = 0, force_sq = 0, moment = 0, moment_sq = 0;
   for (const RubberStep& s : rubber_steps()) {
     const std::string shape = rubber_shape(s.number);
     for (std::uint64_t seed = 1; seed <= 3 && s.number > 0 && !shape.empty(); ++seed) {
       const auto number = 10 * static_cast<std::uint64_t>(s.number) + seed;
       const auto r =
-          wrench(frames.heights(shape, number), jittered(s.dots, number), s.pressure_mpa, work);
+          wrench(frames.heights(shape, number), jittered(s.dots, number), s.pressure_mpa);
       require_data(r.ok(), shape + " has no force");
       force += r.force_n.x * s.force_n.x + r.force_n.y * s.force_n.y;
       force_sq += fingerpad::square(s.force_n.x) + fingerpad::square(s.force_n.y);

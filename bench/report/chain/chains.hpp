@@ -7,7 +7,6 @@
 
 #include "crew.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
-#include "fingerpad/published/wrench.hpp"
 
 namespace chain {
 
@@ -20,11 +19,7 @@ constexpr std::array<const char*, 7> stage_names = {
     "smoothing, depth", "contact region",  "object motion", "stick ratio",
     "look-up forces",   "heights in plan", "wrench"};
 
-struct WithLeastSquares : fingerpad::FingertipMethods {};
-/// The default methods, with the solver that fits the chain's time budget.
-struct ByDefault : fingerpad::FingertipMethods {
-  using Solver = fingerpad::published::Iteration;
-};
+struct ByDefault : fingerpad::FingertipMethods {};
 /// The cheapest methods for a flat contact on a pad with dark dots, whose edge is not placed.
 struct Lean : ByDefault {
   static constexpr int sampling = 4;

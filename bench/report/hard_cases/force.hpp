@@ -15,7 +15,6 @@
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/wrench.hpp"
 #include "row.hpp"
 #include "support/pressed_pad.hpp"
 
@@ -55,68 +54,6 @@ inline Row below_range() {
                  const S held = force(d, {S(1), S(0)}).force_n;
                  f.naive.add_absolute((std::min)(printed, S(0)), Digits50(0));
                  f.stable.add_absolute((std::min)(held, S(0)), Digits50(0));
-               }
-               return f;
-             });
-}
-
-/// A pressed film cut into segments, with its tensions by the published iteration and by the same
-/// balance summed from the rim upward.
-template <class S>
-struct CutFilm {
-  static constexpr Index columns = 18, rows = 30;
-  fingerpad::detail::membrane::Segments<S> segments{columns, rows};
-  fingerpad::detail::membrane::Tensions<S> tensions{columns, rows};
-  S pressure = S(test::pressed_mpa);
-
-  CutFilm() {
-    const test::RoundPad<test::FilmSide> film;
-    const auto options = test::exact_options<S>(columns, rows);
-    fingerpad::detail::membrane::Compartments<S> nodes(
-        columns, rows, S(film.radius_mm),
-        {options.line_step_mm, options.blur_mm, options.reach_mm});
-    nodes.template lay<fingerpad::StraightLines>(film, Point3<S>{S(0), S(0), S(0)});
-    segments.measure(nodes);
-    std::vector<Point3<S>> pulls;
-    for (Index i = 0; i < columns; ++i) {
-      pulls.push_back(segments.around(i, 0).normal);
-    }
-    const fingerpad::published::Iteration iteration;
-    fingerpad::published::Iteration::Work<S> work(iteration, columns, rows);
-    iteration.solve<false>(segments, nodes, pulls, pressure, work, tensions);
-  }
-  S tension(Index i, Index j) const {
-    return tensions.around_normal[static_cast<std::size_t>(j * columns + i)];
-  }
-  /// f_v of line i from the sum at the rim upward.
-  std::vector<S> from_rim(Index i) const {
-    S load = S(0);
-    for (Index j = 0; j < rows; ++j) {
-      load = load + pressure * segments.area(i, j).z;
-    }
-    std::vector<S> f;
-    for (Index j = 0; j <= rows; ++j) {
-      f.push_back(S(load / segments.around(i, j).normal.z));
-      load = j < rows ? S(load - pressure * segments.area(i, j).z) : load;
-    }
-    return f;
-  }
-};
-
-inline Row level_edge() {
-  return row("membrane force",
-             "tension f_v up to the level edge of the contact, from the rim upward; relative",
-             "summed from the contact down; a level edge has its neighbour's", []<class S>(S) {
-               Forms f;
-               const CutFilm<S> film;
-               static const CutFilm<Digits50> exact_film;
-               for (Index i = 0; i < film.columns; ++i) {
-                 const auto up = film.from_rim(i);
-                 for (Index j = 0; j <= film.rows; ++j) {
-                   const Digits50 exact = exact_film.tension(i, j);
-                   f.naive.add_relative(up[static_cast<std::size_t>(j)], exact);
-                   f.stable.add_relative(film.tension(i, j), exact);
-                 }
                }
                return f;
              });
@@ -174,7 +111,7 @@ inline Row march_from_rim() {
       "membrane force",
       "lateral load: both tractions of the rim marched up to the contact, 36 lines, of the "
       "mean tension; fingerpad: lateral force by the rim's directions, relative",
-      "least squares over the whole membrane", []<class S>(S) {
+      "the pulls of the rim up to one factor", []<class S>(S) {
         Forms f;
         const std::size_t n = 36;
         std::vector<S> u(n), v(n);
@@ -207,11 +144,8 @@ inline Row march_from_rim() {
             }
             return to;
           };
-          const fingerpad::Wrench<fingerpad::LeastSquares, fingerpad::OneRow, fingerpad::ClampedRim,
-                                  fingerpad::StraightLines, T>
-              wrench(in_s(rim.borders()), test::exact_options<T>(24, 8));
-          auto work = wrench.workspace();
-          return wrench(pad, in_s(rim.dots(load)), T(S(test::pressed_mpa)), work).force_n;
+          fingerpad::Wrench<T> wrench(in_s(rim.borders()), test::exact_options<T>());
+          return wrench(pad, in_s(rim.dots(load)), T(S(test::pressed_mpa))).force_n;
         };
         f.stable.add_relative(force(S(0)).x, force(Digits50(0)).x);
         return f;

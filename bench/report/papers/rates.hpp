@@ -46,12 +46,10 @@ std::string region_rate(Region region, const test::Image<float>& depth) {
 }
 
 template <class W>
-std::string wrench_rate(const W& wrench) {
+std::string wrench_rate(W wrench) {
   const test::WrenchFrame& f = test::wrench_frames()[1];
   const auto dots = test::rows_of(f.dots, 1);
-  auto workspace = wrench.workspace();
-  return rate(
-      [&] { (void)wrench(test::exact_heights(f.heights), dots, f.pressure_mpa, workspace); });
+  return rate([&] { (void)wrench(test::exact_heights(f.heights), dots, f.pressure_mpa); });
 }
 
 template <class Ratio>
@@ -74,25 +72,25 @@ inline Section rates_section() {
   const test::Pad& pad = frames.pad();
   const SceneFrame& press = frames("press");
   const DepthEstimator<> depth(pad.camera, pad.fluid, test::Scene().reference(frames.free_mm()));
-  auto options = published::wrench_options();
-  WrenchOptions<double> by_default;
-  options.side_dot_length_mm = by_default.side_dot_length_mm = 0.79995;
+  const WrenchOptions<double> by_default{.side_dot_length_mm = 0.79995,
+                                         .stress_free_inclination_rad = 1.0623};
   const auto rim = test::rim_border();
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   const std::string nearest = "640 x 480 px, one thread of this machine";
-  return {"Rates",
-          {{"shape [S]", "frames a second", "about 1 Hz",
-            depth_rate(published_depth(), press.frame), depth_rate(depth, press.frame), nearest},
-           {"contact and location [C]", "frames a second", "about 2 Hz",
-            rate([&] { (void)published::contact_by_slides(press.measured_mm, mask); }),
-            region_rate(ContactRegion<>(pad.camera, pad.rows, pad.cols), press.measured_mm),
-            "contact region, the same"},
-           {"stick ratio [R]", "frames a second", "about 4 Hz", stick_rate(test::PublishedStick{}),
-            stick_rate(StickRatio<>(21, 21)), "21 x 21 dots that are found"},
-           {"six-axis force [M]", "frames a second", "1.0 Hz",
-            wrench_rate(published::wrench(rim, options)), wrench_rate(Wrench<>(rim, by_default)),
-            "shape that is given; published 72 x 65 segments, default 36 x 30"},
-           {"camera", "frames a second", "30 Hz", "", "", ""}}};
+  return {
+      "Rates",
+      {{"shape [S]", "frames a second", "about 1 Hz", depth_rate(published_depth(), press.frame),
+        depth_rate(depth, press.frame), nearest},
+       {"contact and location [C]", "frames a second", "about 2 Hz",
+        rate([&] { (void)published::contact_by_slides(press.measured_mm, mask); }),
+        region_rate(ContactRegion<>(pad.camera, pad.rows, pad.cols), press.measured_mm),
+        "contact region, the same"},
+       {"stick ratio [R]", "frames a second", "about 4 Hz", stick_rate(test::PublishedStick{}),
+        stick_rate(StickRatio<>(21, 21)), "21 x 21 dots that are found"},
+       {"six-axis force [M]", "frames a second", "1.0 Hz",
+        wrench_rate(published::SegmentEquilibrium<>(rim)), wrench_rate(Wrench<>(rim, by_default)),
+        "shape that is given, 72 side dots; published 72 x 70 segments"},
+       {"camera", "frames a second", "30 Hz", "", "", ""}}};
 }
 
 }  // namespace bench::papers

@@ -164,7 +164,8 @@ inline Section slippage_section() {
       return Spread(ratio_errors(ratio, scene, phase)).mean_and_worst();
     };
     section.rows.push_back({experiment, "error of the ratio, mean / largest", printed,
-                            cell(printed_ratio(2)), cell(StickRatio<>(21, 21, test_of(2))), nearest});
+                            cell(printed_ratio(2)), cell(StickRatio<>(21, 21, test_of(2))),
+                            nearest});
   };
   add("dragged to slip", "curves of Fig. 16", "drag", "drag", "plate dragged to slip");
   add("the opposite direction", "\"can still estimate\"", "drag", "back", "the same, back to slip");

@@ -142,8 +142,10 @@ Rim read_rim(const Section& root) {
     rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");
   }
   if (section.has("mooney_share")) {
-    rim.law.mooney_share = section.number("mooney_share");
-    section.check([&] { expects_valid(rim.law); });
+    rim.mooney_share = section.number("mooney_share");
+    section.check([&] {
+      fingerpad::require("rim", {{"mooney_share", rim.mooney_share, fingerpad::within(0, 1)}});
+    });
   }
   return rim;
 }

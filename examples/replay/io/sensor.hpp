@@ -11,7 +11,6 @@
 
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/rim_traction.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
@@ -42,7 +41,7 @@ struct Rim {
   double side_dot_length_mm = 0;
   std::optional<double> membrane_modulus_n_per_mm;
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
-  fingerpad::ClampedRim law;                          ///< of its rubber
+  double mooney_share = 0;                            ///< C2 / (C1 + C2) of its rubber
 };
 
 /// The measure of a contact by which a force is looked up.

@@ -96,12 +96,11 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   }
   if (lacking_for_wrench(recording).empty()) {
     options.rim_mm = kept(recording.side_dots->border_mm, settings.rim_mm);
-    options.side_dot_row.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
-    options.rim_law = sensor.rim->law;
     options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
     options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
-    options.wrench.calibrated_modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
-    options.wrench.falls_back_on_modulus = sensor.rim->membrane_modulus_n_per_mm.has_value();
+    options.wrench.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
+    options.wrench.mooney_share = sensor.rim->mooney_share;
+    options.wrench.modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
   }
   return settings;
 }

@@ -72,21 +72,6 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
   return fit_contact_threshold(recording.sensor.camera, depths_mm).threshold_per_mm;
 }
 
-/// Columns of the border in order of their angle, which is the order of Fingertip's tensions.
-std::vector<int> by_angle(const SpaceGrid& border_mm) {
-  std::vector<std::pair<double, int>> columns;
-  for (int k = 0; k < border_mm.cols; ++k) {
-    const double angle = std::atan2(border_mm(0, k)[1], border_mm(0, k)[0]);
-    columns.emplace_back(angle < 0 ? angle + 2 * CV_PI : angle, k);
-  }
-  std::sort(columns.begin(), columns.end());
-  std::vector<int> order;
-  for (const auto& [angle, column] : columns) {
-    order.push_back(column);
-  }
-  return order;
-}
-
 /// Measures the time of each stage.
 struct Watch {
   using Clock = std::chrono::steady_clock;
@@ -106,7 +91,6 @@ class Step : public FingertipStep {
   Step(const Recording& recording, const FingertipOptions& options)
       : recording_(recording), with_dots_(options.free_dots_mm.rows() > 0), fingertip_(options) {
     if (options.rim_mm.rows() > 0) {
-      border_order_ = by_angle(recording.side_dots->border_mm);
       no_side_dots_.create(recording.side_dots->border_mm.size());
       no_side_dots_ = cv::Vec3d::all(not_known);
     }
@@ -142,7 +126,7 @@ class Step : public FingertipStep {
 
  private:
   const SpaceGrid& side_dots_of(int frame) const {
-    if (border_order_.empty()) {
+    if (no_side_dots_.empty()) {
       return no_side_dots_;
     }
     const auto found = recording_.side_dots->dots_mm.find(frame);
@@ -203,12 +187,11 @@ class Step : public FingertipStep {
 
   WrenchFrame wrench_of(const FingertipResult& touch) const {
     WrenchFrame wrench;
-    wrench.present = !border_order_.empty();
+    wrench.present = !no_side_dots_.empty();
     wrench.result = touch.wrench;
-    fingerpad::Index k = 0;
-    for (const int column : border_order_) {
+    for (int column = 0; column < no_side_dots_.cols; ++column) {
       const cv::Vec3d& at = recording_.side_dots->border_mm(0, column);
-      wrench.tension.push_back({{at[0], at[1], at[2]}, fingertip_.rim_tension(k++)});
+      wrench.tension.push_back({{at[0], at[1], at[2]}, fingertip_.rim_tension(column)});
     }
     return wrench;
   }
@@ -216,8 +199,7 @@ class Step : public FingertipStep {
   const Recording& recording_;
   bool with_dots_;
   fingerpad::Fingertip<Methods<Pixel>> fingertip_;
-  std::vector<int> border_order_;  ///< empty without six-axis force
-  SpaceGrid no_side_dots_;
+  SpaceGrid no_side_dots_;  ///< of a frame without them; empty without six-axis force
 };
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/force/wrench_options.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/slip/friction_limit.hpp"

@@ -19,8 +19,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

@@ -25,8 +25,8 @@
 #include <optional>
 #include <vector>
 
-#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"

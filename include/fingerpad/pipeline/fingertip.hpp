@@ -114,10 +114,10 @@ class Fingertip {
   StridedView<const DotSlip<double>> dot_slips() const requires(has_dots) {
     return dots_.slipped();
   }
-  /// Pull of the membrane on the k-th point of the rim in the last frame, N/mm, ordered by angle
-  /// from 0 to 2 pi; NaN where it is not known. `k` is in [0, columns of rim_mm).
+  /// Pull of the membrane on the rim at column `k` of rim_mm in the last frame, N/mm; NaN where it
+  /// is not known.
   Point3<double> rim_tension(Index k) const requires(has_wrench) {
-    return balance_.balance->work.rim_tension(k);
+    return balance_.balance->wrench.rim_tension(k);
   }
 
   /// Forgets the object: the next frame is treated as the first.

@@ -17,7 +17,6 @@
 #include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/pressure_from_rim.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
@@ -78,7 +77,6 @@ struct FingertipMethods {
   /// pixel.
   static constexpr int sampling = 3;
 
-  using Solver = LeastSquares;
   using Pixel = std::uint8_t;          ///< cell of the frame's channels
   using Executor = detail::OneThread;  ///< runs the work of a frame
 };
@@ -115,9 +113,7 @@ struct FingertipOptions {
 
   /// Positions at which the side dots are fixed; one row; empty: no six-axis force.
   StridedView<const Point3<double>> rim_mm = {};
-  OneRow side_dot_row = {};
-  ClampedRim rim_law = {};  ///< of the membrane's rubber
-  /// With calibrated_modulus_n_per_mm, pressure_from_rim() answers frames whose pressure is NaN.
+  /// With modulus_n_per_mm, frames whose pressure is NaN are answered too.
   WrenchOptions<double> wrench = {};
 };
 

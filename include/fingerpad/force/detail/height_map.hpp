@@ -26,45 +26,6 @@ struct HeightAndSlope {
   S along_y;
 };
 
-/// Middle of the contact, from a 64 x 64 mesh of positions over the base; false without contact.
-template <class Shape, scalar S>
-bool find_contact(const Shape& shape, const S& base_radius_mm, Point3<S>& center) {
-  constexpr int places = 64;
-  const S step = S(2) * base_radius_mm / S(places);
-  S x_sum = S(0), y_sum = S(0);
-  int count = 0;
-  for (int i = 0; i < places; ++i) {
-    const S y = (S(i) + S(1) / S(2)) * step - base_radius_mm;
-    for (int j = 0; j < places; ++j) {
-      const S x = (S(j) + S(1) / S(2)) * step - base_radius_mm;
-      if (shape.in_contact(x, y)) {
-        x_sum = x_sum + x;
-        y_sum = y_sum + y;
-        ++count;
-      }
-    }
-  }
-  if (count == 0) {
-    return false;
-  }
-  center = {S(x_sum / S(count)), S(y_sum / S(count)), S(0)};
-  return true;
-}
-
-/// Whether any height is known along the x or y axis. Without one, it is unknown whether there is a
-/// contact.
-template <class Shape, scalar S>
-bool has_height(const Shape& shape, const S& base_radius_mm) {
-  constexpr int places = 64;
-  for (int i = 1 - places; i < places; ++i) {
-    const S at = S(i) / S(places) * base_radius_mm;
-    if (is_finite(shape(at, S(0)).height_mm) || is_finite(shape(S(0), at).height_mm)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// Heights on a square mesh in plan about Q. Slopes at the nodes are central differences; between
 /// nodes, heights and slopes are interpolated bilinearly. 32 bytes per node in double.
 template <scalar S>

@@ -343,22 +343,17 @@ struct FingertipLookUp {
 /// The six-axis force.
 template <class Methods>
 struct FingertipBalance {
-  using Solver = Wrench<typename Methods::Solver>;
   static constexpr int step = Methods::sampling;
   struct Balance {
     PadHeights<> heights;
     PadHeights<>::Map map;
-    Solver wrench;
-    typename Solver::Workspace work;
-    std::optional<double> modulus_n_per_mm;
+    Wrench<> wrench;
 
     explicit Balance(const FingertipOptions& o)
         : heights(
               o.rows / step, o.cols / step, sampled(o.camera, step), o.wrench.base_radius_mm + 1),
           map(heights.map()),
-          wrench(o.rim_mm, o.wrench, {}, o.side_dot_row, o.rim_law),
-          work(wrench.workspace()),
-          modulus_n_per_mm(o.wrench.calibrated_modulus_n_per_mm) {}
+          wrench(o.rim_mm, o.wrench) {}
   };
   std::optional<Balance> balance;  // empty without a rim
 
@@ -368,12 +363,6 @@ struct FingertipBalance {
     }
   }
   bool answers(const FingertipResult& touch) const { return !balance || touch.wrench.ok(); }
-
-  template <class SideDots>
-  WrenchResult<double> without_gauge(const SideDots& side_dots_mm) {
-    return pressure_from_rim(balance->wrench, balance->map, side_dots_mm,
-                             *balance->modulus_n_per_mm, balance->work);
-  }
 
   template <class Image, class Contact, class Executor>
   void measure(const Image& image, const Contact& region, Executor& executor) {
@@ -394,9 +383,7 @@ struct FingertipBalance {
              FingertipResult& touch,
              Watch& watch) {
     if (balance) {
-      touch.wrench = is_finite(pressure_mpa) || !balance->modulus_n_per_mm
-                         ? balance->wrench(balance->map, side_dots_mm, pressure_mpa, balance->work)
-                         : without_gauge(side_dots_mm);
+      touch.wrench = balance->wrench(balance->map, side_dots_mm, pressure_mpa);
     }
     watch(FingertipStage::wrench);
   }

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// The six-axis force as printed: its lines and contours, its tensions, and what it loses.
+#include "fingerpad/published/segment_equilibrium.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/pressed_pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using published::SegmentEquilibrium;
+using published::SegmentEquilibriumOptions;
+using published::SegmentStatus;
+using test::ArcSide;
+using test::FilmSide;
+using test::pressed_mpa;
+using test::RimLoad;
+using test::RoundPad;
+
+namespace {
+
+using Options = SegmentEquilibriumOptions<double>;
+
+/// A mound that is level at the rim, with its summit 2.8 mm off the middle.
+struct Mound {
+  template <class S>
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+    constexpr double r = 18.735;
+    const double u = value(x) / r, v = value(y) / r, lean = 1 + 0.3 * u, cap = 1 - u * u - v * v;
+    return {S(9 * cap * lean), S(9 * (-2 * u * lean + 0.3 * cap) / r), S(9 * -2 * v * lean / r)};
+  }
+  template <class S>
+  bool in_contact(const S& x, const S& y) const {
+    return (*this)(x, y).height_mm > 8.5;
+  }
+};
+
+/// An asymmetric mound, or its mirror image with y reversed.
+struct Leaning {
+  double side = 1;
+  template <class S>
+  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+    constexpr double c = 0.8, s = 0.6;
+    const auto along = Mound()(S(c * x + s * side * y), S(c * side * y - s * x));
+    return {along.height_mm, S(c * along.along_x - s * along.along_y),
+            S(side * (s * along.along_x + c * along.along_y))};
+  }
+  template <class S>
+  bool in_contact(const S& x, const S& y) const {
+    return (*this)(x, y).height_mm > 8.5;
+  }
+};
+
+/// Sine of the angle between a step from a to b and the gradient of the heights between them.
+double off_gradient(const Mound& mound, const Point3<double>& a, const Point3<double>& b) {
+  const auto at = mound((a.x + b.x) / 2, (a.y + b.y) / 2);
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  return std::abs(dx * at.along_y - dy * at.along_x) /
+         (std::hypot(dx, dy) * std::hypot(at.along_x, at.along_y));
+}
+
+}  // namespace
+
+TEST_CASE("published six-axis force: a press, and what the direction of the side dots loses",
+          "[published]") {
+  const RoundPad<FilmSide> pad;
+  const auto rim = rim_of(pad);
+  const double normal = pad.tension(pad.radius_mm, pressed_mpa);
+  SegmentEquilibrium<> wrench(rim.borders());
+  CHECK(wrench.lines() == 72);
+  const auto press = wrench(pad, rim.dots([&](double) { return RimLoad{normal, 0}; }), pressed_mpa);
+  REQUIRE(press.status == SegmentStatus::ok);
+  const double area = 3.14159265 * pad.contact_mm * pad.contact_mm;
+  CHECK(press.force_n.z == Approx(-pressed_mpa * area).epsilon(0.03));
+  CHECK(std::hypot(press.force_n.x, press.force_n.y) < 1e-9);
+  CHECK(norm(press.moment_n_mm) < 1e-6);
+  // shear carries 1 / lambda^4 more than the direction of the dots says
+  const auto load = [&](double) { return RimLoad{normal, 0.1 * normal}; };
+  const auto twist = wrench(pad, rim.dots(load), pressed_mpa);
+  const double share = 1 - std::pow(rim.stretch(normal), -4);
+  CHECK((share > 0.1 && share < 0.7));
+  CHECK(twist.moment_n_mm.z / wrench_of(rim, load, pressed_mpa).moment_n_mm.z ==
+        Approx(share).epsilon(0.03));
+}
+
+TEST_CASE("published six-axis force: f_h of a flat press, in closed form", "[published]") {
+  // f_v K_1 + f_h K_2 = p, with the arc's curvature along the meridian and sin(phi) / r around
+  const RoundPad<ArcSide> pad;
+  auto rim = rim_of(pad);
+  rim.count = 36;
+  const double p = pressed_mpa, normal = pad.tension(pad.radius_mm, p);
+  SegmentEquilibrium<> wrench(rim.borders(), {.delta_z_mm = 0.28, .contours = 32});
+  const auto r = wrench(pad, rim.dots([&](double) { return RimLoad{normal, 0}; }), p);
+  REQUIRE(r.ok());
+  double worst = 0, largest = 0;
+  for (Index j = 5; j < 27; ++j) {
+    const auto &low = wrench.node(3, j), &up = wrench.node(3, j + 1);
+    const double at = (std::hypot(low.x, low.y) + std::hypot(up.x, up.y)) / 2;
+    const double truth = (p - pad.tension(at, p) / pad.bend_mm()) * at / pad.sine(at);
+    worst = (std::max)(worst, std::abs(wrench.f_h(3, j) - truth));
+    largest = (std::max)(largest, std::abs(truth));
+  }
+  CHECK(worst < 0.07 * largest);
+}
+
+TEST_CASE("published six-axis force: contour lines every 0.2 mm, of each line its own number",
+          "[published]") {
+  const Mound mound;
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  SegmentEquilibrium<> wrench(rim.borders());
+  (void)wrench(mound, rim.dots([&](double) { return RimLoad{0.1, 0}; }), pressed_mpa);
+  int cut = 0;
+  for (Index i = 0; i < 72; ++i) {
+    const double end = wrench.node(i, 70).z;
+    Index own = 0;
+    for (Index j = 0; j <= 70; ++j) {
+      const double contour = 0.2 * static_cast<double>(j);
+      CHECK(wrench.node(i, j).z == Approx((std::min)(contour, end)).margin(2e-3));
+      own += contour < end ? 1 : 0;
+    }
+    CHECK(own == static_cast<Index>(std::ceil(end / 0.2)));
+    cut += own < 70 ? 1 : 0;
+  }
+  CHECK(cut == 72);
+  // along the gradient, not straight toward the summit
+  for (const Index i : {9, 18, 27, 45, 54, 63}) {
+    for (Index j = 5; j < 30; ++j) {
+      CAPTURE(i, j);
+      CHECK(off_gradient(mound, wrench.node(i, j), wrench.node(i, j + 1)) < 0.06);
+    }
+  }
+}
+
+TEST_CASE("the printed iteration keeps the symmetry of a twisted pad", "[published]") {
+  // The shear that a twist puts into every segment turns with the segment: pushes along the plate
+  // cancel around the rim, and the pull does not depend on the sense of the twist.
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const double normal = pad.tension(pad.radius_mm, pressed_mpa);
+  SegmentEquilibrium<> wrench(rim.borders());
+  const auto twisted = [&](double shear) {
+    const auto load = [&](double) { return RimLoad{normal, shear * normal}; };
+    const auto found = wrench(pad, rim.dots(load), pressed_mpa);
+    REQUIRE(found.ok());
+    return found;
+  };
+  const auto left = twisted(0.2), right = twisted(-0.2);
+  const double size = std::abs(left.force_n.z);
+  CHECK(std::abs(left.force_n.x) < 1e-6 * size);
+  CHECK(std::abs(left.force_n.y) < 1e-6 * size);
+  CHECK(left.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
+  CHECK(left.moment_n_mm.z == Approx(-right.moment_n_mm.z).epsilon(1e-6));
+  CHECK(std::abs(left.moment_n_mm.z) > 1);
+}
+
+TEST_CASE("published six-axis force: what it refuses", "[published]") {
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const auto dots = rim.dots([](double) { return RimLoad{0.1, 0}; });
+  SegmentEquilibrium<> wrench(rim.borders());
+  const test::Image<Point3<double>> few(1, 71, {0, 0, 0});
+  CHECK(wrench(pad, few, pressed_mpa).status == SegmentStatus::refused);
+  CHECK(wrench(pad, dots, -1.0).status == SegmentStatus::bad_input);
+  auto without_one = dots;
+  without_one(0, 3).y = test::nan;
+  CHECK(wrench(pad, without_one, pressed_mpa).status == SegmentStatus::bad_input);
+  auto flat = dots;
+  for (auto& dot : flat.cells) {
+    dot.z = 0;
+  }
+  const auto r = wrench(pad, flat, pressed_mpa);
+  CHECK(r.status == SegmentStatus::bad_input);
+  CHECK(r.force_n.x != r.force_n.x);
+  const auto said = [&](const Options& options) {
+    return test::refusal([&] { const SegmentEquilibrium<> refused(rim.borders(), options); });
+  };
+  const std::string owner = "published::SegmentEquilibriumOptions: ";
+  CHECK(said({}) == "accepted");
+  CHECK(said({.passes = 1}) == "accepted");
+  CHECK(said({.passes = 100}) == "accepted");
+  CHECK(test::begins_with(said({.passes = 0}), owner + "passes = 0"));
+  CHECK(test::begins_with(said({.passes = 101}), owner + "passes = 101"));
+  CHECK(test::begins_with(said({.base_radius_mm = 0}), owner + "base_radius_mm = 0"));
+  CHECK(test::begins_with(said({.delta_z_mm = 0}), owner + "delta_z_mm = 0"));
+  CHECK(test::begins_with(said({.contours = 1}), owner + "contours = 1"));
+  CHECK(test::begins_with(said({.step_mm = 0}), owner + "step_mm = 0"));
+  CHECK(test::begins_with(said({.inside_mm = -1}), owner + "inside_mm = -1"));
+}
+
+TEST_CASE("published six-axis force: names of what can happen", "[published]") {
+  const std::array<const char*, 6> names = {"ok",        "no contact", "no shape",
+                                            "bad input", "not solved", "refused"};
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    CHECK(std::string(name_of(static_cast<SegmentStatus>(k))) == names[k]);
+  }
+}
