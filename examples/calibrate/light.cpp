@@ -180,7 +180,7 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
     const double fitted = fit.scattering.at(s.rho_sq_mm2) * w;
     const double left =
         depth_equation(fluid, s.pencil, fit.scattering.at(s.rho_sq_mm2), s.colour, s.depth_mm)
-            .value;
+            .first;
     plot.points.push_back({s.depth_mm, fitted - left, fitted});
   }
   outcome.reports = {report};

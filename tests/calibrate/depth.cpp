@@ -75,7 +75,7 @@ double depth_of(const Fit& fit, const DepthSample<double>& s) {
   for (int k = 0; k < 60; ++k) {
     const double l = (low + high) / 2;
     const double g = fit.scattering.at(s.rho_sq_mm2);
-    (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).value > 0 ? high : low) = l;
+    (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).first > 0 ? high : low) = l;
   }
   return low;
 }
@@ -200,7 +200,7 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
       const double delta = best[1];  // with the weights of the fit
       const double noise_sq = std::exp(2 * delta * path) + best[2] * best[2];
       const Absorption<double> fluid{p[0], p[0] + p[1], p[2]};
-      const double f = depth_equation(fluid, s.pencil, p[3], s.colour, s.depth_mm).value;
+      const double f = depth_equation(fluid, s.pencil, p[3], s.colour, s.depth_mm).first;
       sum += f * f / noise_sq;
     }
     return sum;

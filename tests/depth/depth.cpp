@@ -835,7 +835,7 @@ double variance_left(double n1, double n2, double a) {
 double mm_per_level(const Pad& pad, Index i, Index j, double l) {
   const auto light = pad.pencil(i, j);
   const auto c = pad.colour(i, j, l, 0.4 * pad.brightness);
-  return 1 / depth_equation(pad.fluid, light, pad.g(i, j), c, l).slope;
+  return 1 / depth_equation(pad.fluid, light, pad.g(i, j), c, l).second;
 }
 
 template <class Pixel>
@@ -1259,6 +1259,10 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   for (const int window_px : {1, 3, 109}) {  // the last is larger than the image
     CHECK(with_options({.window_px = window_px}) == "accepted");
   }
+  // the limit is on window_px / step
+  CHECK(with_options({.window_px = 327, .step = 3}) == "accepted");
+  CHECK(with_options({.window_px = 329, .step = 3}) ==
+        "DepthOptions: window_px = 329, must be odd, in [1, 327]");
   for (const int step : {-1, 0, 17}) {
     CHECK(with_options({.step = step}) ==
           "DepthOptions: step = " + std::to_string(step) + ", must be in [1, 16]");

@@ -376,7 +376,7 @@ S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<
   S sum = S(0);
   for (const DepthSample<S>& s : samples) {
     const S g = fit.scattering.at(s.rho_sq_mm2);
-    sum += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).value);
+    sum += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).first);
   }
   return sqrt(sum / S(static_cast<double>(samples.size())));
 }
@@ -480,7 +480,7 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
   for (int j = 1; j <= Degree; ++j) {
     by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.scattering.rho_max_mm);
   }
-  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).slope;
+  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).second;
   const S variance = by.dot(fit.covariance * by);
   return sqrt(variance) / slope;
 }

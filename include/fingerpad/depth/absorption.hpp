@@ -15,6 +15,7 @@
 // levels, lengths mm, g grey levels per mm^2.
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -146,22 +147,15 @@ Colour<S> colour_at_depth(const Absorption<S>& fluid,
   return {red, green};
 }
 
-/// A function's value and derivative.
-template <scalar S>
-struct ValueAndSlope {
-  S value;
-  S slope;
-};
-
-/// The depth equation F(l) = green exp(delta k l) - kappa red + g W(l) and its slope. F rises
+/// F and dF/dl of the depth equation F(l) = green exp(delta k l) - kappa red + g W(l) = 0. F rises
 /// strictly where green >= 0, g > 0 and delta >= 0, so it has at most one root. It replaces the
 /// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
 template <scalar S>
-ValueAndSlope<S> depth_equation(const Absorption<S>& fluid,
-                                const Pencil<S>& pencil,
-                                const S& scattering,
-                                const Colour<S>& colour,
-                                const S& depth_mm) {
+std::pair<S, S> depth_equation(const Absorption<S>& fluid,
+                               const Pencil<S>& pencil,
+                               const S& scattering,
+                               const Colour<S>& colour,
+                               const S& depth_mm) {
   using std::exp;
   const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * pencil.path_factor;
   const S membrane = colour.green * exp(delta_k * depth_mm);

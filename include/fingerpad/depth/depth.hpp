@@ -36,8 +36,8 @@ namespace fingerpad {
 inline namespace v0 {
 
 struct DepthOptions {
-  int window_px = 29;  ///< width of the smoothing window, odd, 3..109; 1: no smoothing, for frames
-                       ///< without noise
+  int window_px = 29;  ///< width of the smoothing window, odd, 3..109 step; 1: no smoothing, for
+                       ///< frames without noise
   int step = 1;        ///< pixels from one sample to the next, for sampled frames, 1..16
   std::optional<GreyScale> scale = {};  ///< empty: grey_scale_of the frame's cells
 };
@@ -45,8 +45,8 @@ struct DepthOptions {
 /// Says which value is out of range; "" if none is.
 inline std::string check(const DepthOptions& options) {
   const std::string refusal =
-      check("DepthOptions", {{"window_px", options.window_px, odd_within(1, 109)},
-                             {"step", options.step, within(1, 16)}});
+      check("DepthOptions", {{"step", options.step, within(1, 16)},
+                             {"window_px", options.window_px, odd_within(1, 109 * options.step)}});
   return refusal.empty() && options.scale ? check(*options.scale) : refusal;
 }
 
@@ -98,24 +98,20 @@ class DepthEstimator {
         pad_(checked_area(camera, fluid, reference, options)),
         scale_(options.scale),
         colours_(camera, fluid, reference, pad_, options.window_px, options.step),
-        solver_(
-            seen_from(camera, pad_), fluid, radius_px(camera, reference) + 1, least_g(reference)),
+        solver_(camera, fluid, radius_px(camera, reference) + 1, least_g(reference)),
         rim_(reference),
-        span_(static_cast<std::size_t>(pad_.rows)),
-        red_(static_cast<std::size_t>(pad_.cols + block)),
+        span_(static_cast<std::size_t>(rows_)),
+        red_(static_cast<std::size_t>(cols_ + block)),
         green_(red_.size()),
         depth_(red_.size()),
-        status_(red_.size()),
-        pad_pixels_(0) {
+        status_(red_.size()) {
     for (Index i = 0; i < pad_.rows; ++i) {
-      const S* per_g = colours_.per_g(i);
-      Span& span = span_[static_cast<std::size_t>(i)];
-      while (span.first < pad_.cols && per_g[span.first] == S(0)) {
-        ++span.first;
-      }
-      for (Index j = span.first; j < pad_.cols; ++j) {
-        span.last = per_g[j] > S(0) ? j + 1 : span.last;
-        pad_pixels_ += per_g[j] > S(0) ? 1 : 0;
+      Span& span = span_[static_cast<std::size_t>(pad_.row + i)];
+      for (Index j = 0; j < pad_.cols; ++j) {
+        if (colours_.per_g(i)[j] > S(0)) {
+          span = {span.last == 0 ? pad_.col + j : span.first, pad_.col + j + 1};
+          ++pad_pixels_;
+        }
       }
     }
   }
@@ -159,31 +155,21 @@ class DepthEstimator {
     const auto from_green = as_view(green);
     const auto to_depth = as_view(depth_mm);
     result.pad_pixels = pad_pixels_;
-    detail::fill_outside(pad_, first, last, to_depth,
-                         static_cast<cell_t<Depth>>(not_a_number<S>()));
-    if constexpr (has_status) {
-      detail::fill_outside(pad_, first, last, as_view(status), PixelStatus::outside_pad);
-    }
-
     const auto pad_red = detail::crop(from_red, pad_);
     const auto pad_green = detail::crop(from_green, pad_);
-    const Index begin = (std::max)(first - pad_.row, Index(0));
-    const Index end = (std::min)(last - pad_.row, pad_.rows);
-    if (begin < end) {
-      colours_.start(pad_red, pad_green, scale, begin);
+    const Index pad_end = pad_.row + pad_.rows;
+    if (first < pad_end && pad_.row < last) {
+      colours_.start(pad_red, pad_green, scale, (std::max)(first - pad_.row, Index(0)));
     }
-    for (Index i = begin; i < end; ++i) {
-      colours_.next(pad_red, pad_green, scale, red_.data(), green_.data());
-      invert(i, pad_red, pad_green, scale, result.count);
-      detail::store_row(depth_.data(), detail::crop(to_depth, pad_), i);
-      if constexpr (has_status) {
-        detail::store_row(status_.data(), detail::crop(as_view(status), pad_), i);
+    for (Index i = first; i < last; ++i) {
+      if (i >= pad_.row && i < pad_end) {
+        colours_.next(pad_red, pad_green, scale, red_.data() + pad_.col, green_.data() + pad_.col);
       }
-    }
-    auto& outside = result.count[static_cast<std::size_t>(PixelStatus::outside_pad)];
-    outside = (last - first) * cols_;
-    for (std::size_t k = 0; k < result.count.size(); ++k) {
-      outside -= k == static_cast<std::size_t>(PixelStatus::outside_pad) ? 0 : result.count[k];
+      invert(i, from_red, from_green, scale, result.count);
+      detail::store_row(depth_.data(), to_depth, i);
+      if constexpr (has_status) {
+        detail::store_row(status_.data(), as_view(status), i);
+      }
     }
     result.rim_ = rim_.light(first, last, from_red, from_green, scale);
     result.judge(false);
@@ -220,13 +206,6 @@ class DepthEstimator {
     return area;
   }
 
-  /// The camera in coordinates of the area.
-  static Camera<double> seen_from(Camera<double> camera, const detail::PadArea& area) {
-    camera.center_x_px -= static_cast<double>(area.col);
-    camera.center_y_px -= static_cast<double>(area.row);
-    return camera;
-  }
-
   /// Distance of the farthest pixel of the pad from the axis, in widths of a pixel.
   static double radius_px(const Camera<double>& camera, const DepthReference<S>& reference) {
     double radius_sq = 0;
@@ -252,8 +231,8 @@ class DepthEstimator {
   }
   bool has_size(std::nullptr_t) const { return true; }
 
-  /// Depths and statuses of one row of the area, from its colours. Counts the pixels with g by
-  /// status, and finds out why pixels without a colour have none.
+  /// Depths and statuses of one row, from its colours. Counts pixels by status, and finds out why
+  /// pixels without a colour have none.
   template <class Red, class Green>
   void invert(Index row,
               const Red& red,
@@ -261,12 +240,13 @@ class DepthEstimator {
               const GreyScale& scale,
               std::array<Index, pixel_status_count>& count) {
     const auto [begin, end] = span_[static_cast<std::size_t>(row)];
+    count[static_cast<std::size_t>(PixelStatus::outside_pad)] += cols_ - (end - begin);
     std::fill_n(depth_.begin(), begin, not_a_number<S>());
     std::fill_n(status_.begin(), begin, PixelStatus::outside_pad);
     for (Index j = begin; j < end; j += block) {
       PixelStatus* status = status_.data() + j;
       solver_.invert(static_cast<int>(row), static_cast<int>(j), red_.data() + j, green_.data() + j,
-                     colours_.per_g(row) + j, depth_.data() + j, status);
+                     colours_.per_g(row - pad_.row) + (j - pad_.col), depth_.data() + j, status);
       const Index n = (std::min)(block, end - j);
       std::fill(status + n, status + block, PixelStatus::ok);
       if (all_ok(status)) {
@@ -313,12 +293,12 @@ class DepthEstimator {
   detail::ColourRows<S> colours_;
   detail::DepthPolynomial<S> solver_;
   detail::Rim rim_;
-  std::vector<Span> span_;  // of each row of the area
-  std::vector<S> red_;      // a row of the area, and a block of spare elements, as the next three
+  std::vector<Span> span_;  // of each row
+  std::vector<S> red_;      // a row, and a block of spare elements, as the next three
   std::vector<S> green_;
   std::vector<S> depth_;
   std::vector<PixelStatus> status_;
-  Index pad_pixels_;
+  Index pad_pixels_ = 0;
 };
 
 }  // namespace v0

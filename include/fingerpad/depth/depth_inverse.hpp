@@ -48,7 +48,7 @@ PixelStatus range_of_root(const Absorption<S>& fluid,
   if (value(at_zero) > 0) {
     return PixelStatus::below_range;
   }
-  const S at_end = depth_equation(fluid, pencil, scattering, colour, fluid.max_depth_mm).value;
+  const S at_end = depth_equation(fluid, pencil, scattering, colour, fluid.max_depth_mm).first;
   return value(at_end) < 0 ? PixelStatus::above_range : PixelStatus::ok;
 }
 
@@ -76,9 +76,9 @@ DepthRoot<S> newton_depth(const Absorption<S>& fluid,
   const bool start_is_inside = value(start_mm) > 0 && value(start_mm) < value(high);
   S depth = start_is_inside ? start_mm : low;
   for (int i = 0; i < 60; ++i) {
-    const auto f = depth_equation(fluid, pencil, scattering, colour, depth);
-    (value(f.value) < 0 ? low : high) = depth;
-    S next = depth - f.value / f.slope;
+    const auto [f, slope] = depth_equation(fluid, pencil, scattering, colour, depth);
+    (value(f) < 0 ? low : high) = depth;
+    S next = depth - f / slope;
     // Written so that a NaN step (no slope) also falls back on the bracket.
     if (!(value(next) >= value(low) && value(next) <= value(high))) {
       next = (low + high) / S(2);

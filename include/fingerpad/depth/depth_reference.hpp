@@ -113,16 +113,14 @@ Ray<C> ray_of(const Camera<C>& camera, Index row, Index col) {
   return ray_at_pixel(camera, C(static_cast<double>(row)), C(static_cast<double>(col)));
 }
 
-/// Shape of the free pad, to detect mistakes. `deepest_mm` is its deepest point within range,
-/// `pixels` the number of its pixels, and `at_zero` how many of them lie at depth 0. `off_axis` is
-/// the distance of their centroid from the optical axis, in radii of a disc of as many pixels.
-/// `too_deep` is the share of the pixels in the middle that lie beyond max_depth_mm.
+/// Shape of the free pad, to detect mistakes.
 struct FreePadShape {
-  double deepest_mm = 0;
   double pixels = 0;
-  double at_zero = 0;
-  double off_axis = 0;
-  double too_deep = 0;
+  double deepest_mm = 0;  ///< of the depths up to max_depth_mm
+  double at_zero = 0;     ///< pixels at depth 0
+  double too_deep = 0;    ///< share of the pixels in their middle that lie beyond max_depth_mm
+  double off_axis = 0;  ///< distance of their centroid from the optical axis, in radii of a disc of
+                        ///< as many pixels; 0 if part of the pad is not seen
 };
 
 /// `depth_mm` holds doubles.
@@ -133,41 +131,35 @@ FreePadShape shape_of_free_pad(const Camera<C>& camera,
   const auto center_x_px = static_cast<double>(value(camera.center_x_px));
   const auto center_y_px = static_cast<double>(value(camera.center_y_px));
   const auto aspect = static_cast<double>(value(camera.pixel_aspect));
+  const Index rows = depth_mm.rows(), cols = depth_mm.cols();
   FreePadShape shape;
   double sum_x = 0, sum_y = 0;
   bool reaches_border = false;
-  const auto each = [&](const auto& visit) {
-    each_pixel(depth_mm.rows(), depth_mm.cols(), [&](Index i, Index j) {
-      const double l = depth_mm(i, j);
-      if (is_finite(l) && l >= 0) {
-        visit(static_cast<double>(j) - center_x_px, (static_cast<double>(i) - center_y_px) * aspect,
-              l, i, j);
-      }
-    });
-  };
-  each([&](double x, double y, double l, Index i, Index j) {
-    shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
-    shape.pixels += 1;
-    shape.at_zero += l == 0 ? 1 : 0;
-    sum_x += x;
-    sum_y += y;
-    reaches_border =
-        reaches_border || i == 0 || j == 0 || i + 1 == depth_mm.rows() || j + 1 == depth_mm.cols();
+  each_pixel(rows, cols, [&](Index i, Index j) {
+    const double l = depth_mm(i, j);
+    if (is_finite(l) && l >= 0) {
+      shape.pixels += 1;
+      shape.at_zero += l == 0 ? 1 : 0;
+      shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
+      sum_x += static_cast<double>(j) - center_x_px;
+      sum_y += (static_cast<double>(i) - center_y_px) * aspect;
+      reaches_border = reaches_border || i == 0 || j == 0 || i + 1 == rows || j + 1 == cols;
+    }
   });
   const double radius_sq = shape.pixels * aspect / std::numbers::pi;
-  // else part of the pad is not seen and its center is unknown, or there is no pad at all
-  if (!reaches_border && shape.pixels >= 100) {
-    shape.off_axis =
-        std::sqrt((square(sum_x) + square(sum_y)) / (radius_sq * square(shape.pixels)));
-  }
-  double middle = 0, deep = 0;
-  each([&](double x, double y, double l, Index, Index) {
-    const bool in_middle =
-        square(x - sum_x / shape.pixels) + square(y - sum_y / shape.pixels) <= radius_sq / 16;
-    middle += in_middle ? 1 : 0;
-    deep += in_middle && l > max_depth_mm ? 1 : 0;
+  double middle = 0;
+  each_pixel(rows, cols, [&](Index i, Index j) {
+    const double x = static_cast<double>(j) - center_x_px - sum_x / shape.pixels;
+    const double y = (static_cast<double>(i) - center_y_px) * aspect - sum_y / shape.pixels;
+    if (depth_mm(i, j) >= 0 && x * x + y * y <= radius_sq / 16) {
+      middle += 1;
+      shape.too_deep += depth_mm(i, j) > max_depth_mm ? 1 : 0;
+    }
   });
-  shape.too_deep = middle > 0 ? deep / middle : 0;
+  shape.too_deep = middle > 0 ? shape.too_deep / middle : 0;
+  if (!reaches_border && shape.pixels >= 100) {  // else there may be no pad at all
+    shape.off_axis = std::hypot(sum_x, sum_y) / (shape.pixels * std::sqrt(radius_sq));
+  }
   return shape;
 }
 
@@ -192,54 +184,43 @@ inline double rim_depth_mm(double deepest_mm) {
   return 0.2 * deepest_mm;
 }
 
-/// g by least squares of known = g(rho) scattered, one equation per usable pixel. In double, the
-/// cubic that is needed is far from losing digits. Refuses data that do not determine g.
+/// The depth equation of a pixel of the free pad: known = g(rho) scattered.
 template <scalar C>
-struct ScatteringFit {
-  static constexpr std::size_t n = 4;
-  RadialScattering<C> g;
-  Index pixels = 0;
-  C residual_rms = C(0);
-
-  /// each(visit) calls visit(rho_sq, known, scattered) for every equation.
-  template <class Each>
-  explicit ScatteringFit(const Each& each) {
-    using std::sqrt;
-    C rho_sq_max = C(0);
-    each([&](const C& rho_sq, const C&, const C&) {
-      rho_sq_max = value(rho_sq_max) < value(rho_sq) ? rho_sq : rho_sq_max;
-    });
-    std::array<C, n> projected = zeros<C, n>();
-    SmallMatrix<C, n> normal;
-    normal.fill(projected);
-    C known_sq = C(0);
-    each([&](const C& rho_sq, const C& known, const C& scattered) {
-      std::array<C, n> term;
-      C power = scattered;
-      for (std::size_t a = 0; a < n; ++a, power = power * rho_sq / rho_sq_max) {
-        term[a] = power;
-        projected[a] = projected[a] + power * known;
-        for (std::size_t b = 0; b <= a; ++b) {
-          normal[a][b] = normal[b][a] = normal[a][b] + power * term[b];
-        }
-      }
-      known_sq = known_sq + square(known);
-      ++pixels;
-    });
-    const NormalEquations<C, n> equations(normal, static_cast<double>(1000 * epsilon<C>()));
-    expects(pixels >= static_cast<Index>(n) && equations.good, "fit_reference",
-            "pixels with a known depth", static_cast<long long>(pixels),
-            "enough, and far enough apart, to determine the scattering over the radius");
-    g.coefficient = equations.solve(projected);
-    g.rho_max_mm = sqrt(rho_sq_max);
-    C left_sq = known_sq;
-    for (std::size_t a = 0; a < n; ++a) {
-      left_sq = left_sq - projected[a] * g.coefficient[a];
-    }
-    // The square root has no derivative at 0, and roundoff may lie below it.
-    residual_rms = value(left_sq) > 0 ? sqrt(left_sq / C(static_cast<double>(pixels))) : C(0);
-  }
+struct ScatteringEquation {
+  C rho_sq_mm2;
+  C known;
+  C scattered;
 };
+
+/// g by least squares. In double, the cubic that is needed is far from losing digits. Refuses data
+/// that do not determine g.
+template <scalar C>
+RadialScattering<C> fit_scattering(const std::vector<ScatteringEquation<C>>& equations) {
+  using std::sqrt;
+  constexpr std::size_t n = 4;
+  C rho_sq_max = C(0);
+  for (const auto& e : equations) {
+    rho_sq_max = value(rho_sq_max) < value(e.rho_sq_mm2) ? e.rho_sq_mm2 : rho_sq_max;
+  }
+  std::array<C, n> projected = zeros<C, n>(), term;
+  SmallMatrix<C, n> normal;
+  normal.fill(projected);
+  for (const auto& [rho_sq, known, scattered] : equations) {
+    C power = scattered;
+    for (std::size_t a = 0; a < n; ++a, power = power * rho_sq / rho_sq_max) {
+      term[a] = power;
+      projected[a] = projected[a] + power * known;
+      for (std::size_t b = 0; b <= a; ++b) {
+        normal[a][b] = normal[b][a] = normal[a][b] + power * term[b];
+      }
+    }
+  }
+  const NormalEquations<C, n> solver(normal, static_cast<double>(1000 * epsilon<C>()));
+  expects(equations.size() >= n && solver.good, "fit_reference", "pixels with a known depth",
+          equations.size(),
+          "enough, and far enough apart, to determine the scattering over the radius");
+  return {solver.solve(projected), sqrt(rho_sq_max)};
+}
 
 /// Refuses a g that no fluid has. The pad holds one fluid, and a lens darkens toward the rim by
 /// less than half, so g may vary by a factor of 2 at most. It is hardly less on the axis than
@@ -284,6 +265,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
                                 const Depth& depth_mm,
                                 const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
   using std::exp;
+  using std::sqrt;
   const auto reds = as_view(red);
   const auto greens = as_view(green);
   const auto depths = as_view(depth_mm);
@@ -303,26 +285,31 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   const auto shape = detail::shape_of_free_pad(camera, max_depth_mm, plain_depth);
   detail::expects_free_pad(shape, max_depth_mm);
 
-  // The depth equation is known = g scattered.
-  const auto each_equation = [&](const auto& visit) {
-    const C delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
-    detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
-      const C l = static_cast<C>(depths(i, j));
-      const C r = static_cast<C>(reds(i, j));
-      const C b = static_cast<C>(greens(i, j));
-      if (value(l) > 0 && value(l) <= value(fluid.max_depth_mm) && scale.counts(r) &&
-          scale.counts(b)) {
-        const Ray<C> ray = detail::ray_of(camera, i, j);
-        const Pencil<C> pencil = pencil_of(camera, ray);
-        const C membrane = b * exp(delta * pencil.path_factor * l);
-        visit(square(ray.plate_rho_mm), (fluid.kappa * r - membrane) / C(scale.units_per_level),
-              scattered_light(l, fluid.c_red_per_mm, pencil));
-      }
-    });
-  };
-  const detail::ScatteringFit<C> fit(each_equation);
-  reference.pixels_used = fit.pixels;
-  reference.residual_rms = S(fit.residual_rms);
+  std::vector<detail::ScatteringEquation<C>> equations;
+  detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
+    const C l = static_cast<C>(depths(i, j));
+    const C r = static_cast<C>(reds(i, j));
+    const C b = static_cast<C>(greens(i, j));
+    if (value(l) > 0 && value(l) <= value(fluid.max_depth_mm) && scale.counts(r) &&
+        scale.counts(b)) {
+      const Ray<C> ray = detail::ray_of(camera, i, j);
+      const Pencil<C> pencil = pencil_of(camera, ray);
+      const C delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+      const C membrane = b * exp(delta * pencil.path_factor * l);
+      equations.push_back({square(ray.plate_rho_mm),
+                           (fluid.kappa * r - membrane) / C(scale.units_per_level),
+                           scattered_light(l, fluid.c_red_per_mm, pencil)});
+    }
+  });
+  const RadialScattering<C> g = detail::fit_scattering(equations);
+  C left_sq = C(0);
+  for (const auto& [rho_sq, known, scattered] : equations) {
+    left_sq = left_sq + square(known - g.at(rho_sq) * scattered);
+  }
+  // The square root has no derivative at 0.
+  const C mean_sq = left_sq / C(static_cast<double>(equations.size()));
+  reference.residual_rms = S(value(mean_sq) > 0 ? sqrt(mean_sq) : C(0));
+  reference.pixels_used = static_cast<Index>(equations.size());
 
   double light = 0, count = 0;
   detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
@@ -330,8 +317,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
     const bool inside = l >= 0 && l <= max_depth_mm;
     reference.depth_mm.push_back(inside ? S(static_cast<C>(depths(i, j))) : not_a_number<S>());
     reference.scattering.push_back(
-        inside ? S(fit.g.at(square(detail::ray_of(camera, i, j).plate_rho_mm)))
-               : not_a_number<S>());
+        inside ? S(g.at(square(detail::ray_of(camera, i, j).plate_rho_mm))) : not_a_number<S>());
     const C b = static_cast<C>(greens(i, j));
     if (l >= 0 && l <= detail::rim_depth_mm(shape.deepest_mm) && scale.counts(b)) {
       light += static_cast<double>(value(b)) / scale.units_per_level;
@@ -339,7 +325,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
     }
   });
   reference.rim_green = S(count > 0 ? light / count : 0);
-  detail::expects_scattering(reference, S(fit.g.at(C(0))));
+  detail::expects_scattering(reference, S(g.at(C(0))));
   return reference;
 }
 

@@ -89,7 +89,7 @@ struct FingertipOptions {
   DepthReference<float> reference;  ///< of the free pad, from fit_reference()
   Index rows = 0;                   ///< of a frame, px
   Index cols = 0;
-  int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109; 1: no smoothing
+  int smoothing_px = 29;  ///< width of the smoothing window, odd, 3 to 109 step; 1: none
   std::optional<NeighbourLight<float>> neighbour_light = {};  ///< empty: not removed
   /// Depth of the free pad, for the neighbour light, from a fingertip without it.
   StridedView<const float> free_depth_mm = {};

@@ -69,10 +69,12 @@ PixelRay<S> ray_of(const Pinhole<S>& camera, const S& row, const S& col) {
 /// and 0.39 mm at 30 degrees and a depth of 13 mm (E019).
 template <scalar S>
 Point3<S> point_at(const Pinhole<S>& camera, const S& row, const S& col, const S& depth_mm) {
-  const PixelRay<S> ray = ray_of(camera, row, col);
-  const S sin1_per_tan2 = ray.cos_phi2 / camera.n;
-  const S scale = camera.pitch_mm * (S(1) + depth_mm * sin1_per_tan2 / camera.h1_mm);
-  return {(col - camera.center_col_px) * scale, (row - camera.center_row_px) * scale, depth_mm};
+  using std::sqrt;
+  const S x = (col - camera.center_col_px) * camera.pitch_mm;
+  const S y = (row - camera.center_row_px) * camera.pitch_mm;
+  const S cos2 = S(1) / sqrt(S(1) + (x * x + y * y) / square(camera.h1_mm));
+  const S stretch = S(1) + depth_mm * cos2 / (camera.n * camera.h1_mm);  // sin1 / tan2 = cos2 / n
+  return {x * stretch, y * stretch, depth_mm};
 }
 
 /// The quotient f(l) = g at the depth l > 0 of a pixel, with the repairs E003-E005:

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the pad is in the image. All work per frame is done on the rectangle of pixels that holds
-// it; pixels outside are only marked. The light near its rim tells whether a frame is of this pad.
+// Where the pad is in the image: colours are averaged in the rectangle of pixels that holds it. The
+// light near its rim tells whether a frame is of this pad.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -51,22 +51,6 @@ auto crop(const View& frame, const PadArea& area) {
   });
 }
 
-/// Writes `cell` to all cells of rows [first, last) outside the area.
-template <class View, class Cell>
-void fill_outside(
-    const PadArea& area, Index first, Index last, const View& view, const Cell& cell) {
-  for (Index i = first; i < last; ++i) {
-    const bool crosses = i >= area.row && i < area.row + area.rows;
-    const Index left = crosses ? area.col : view.cols();
-    for (Index j = 0; j < left; ++j) {
-      view(i, j) = cell;
-    }
-    for (Index j = crosses ? area.col + area.cols : view.cols(); j < view.cols(); ++j) {
-      view(i, j) = cell;
-    }
-  }
-}
-
 /// Green near the rim over that of the reference, summed over sampled pixels. A press hardly moves
 /// the rim, so that a change shows another lamp or membrane.
 struct RimLight {
@@ -93,18 +77,17 @@ class Rim {
   template <scalar S>
   explicit Rim(const DepthReference<S>& reference)
       : reference_(static_cast<double>(reference.rim_green)) {
-    S deepest_mm = S(0);
+    double deepest_mm = 0;
     for (const S& l : reference.depth_mm) {
-      deepest_mm = l > deepest_mm ? l : deepest_mm;
+      deepest_mm = l > S(deepest_mm) ? static_cast<double>(l) : deepest_mm;
     }
     std::vector<Pixel> rim;
     each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
-      if (reference.depth(i, j) <= S(rim_depth_mm(static_cast<double>(deepest_mm)))) {
+      if (reference.depth(i, j) <= S(rim_depth_mm(deepest_mm))) {
         rim.push_back({i, j});
       }
     });
-    const std::size_t step = rim.size() / 1024 + 1;
-    for (std::size_t k = 0; reference_ > 0 && k < rim.size(); k += step) {
+    for (std::size_t k = 0; reference_ > 0 && k < rim.size(); k += rim.size() / 1024 + 1) {
       pixels_.push_back(rim[k]);
     }
   }

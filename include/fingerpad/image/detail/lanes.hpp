@@ -96,65 +96,29 @@ template <class V, class S>
   }
 }
 
-/// Integers that are widened or narrowed by a factor of two at a time. Machines have instructions
-/// for these steps, and GCC 12 uses them.
-template <class T> concept narrow_integer = std::unsigned_integral<T> && sizeof(T) <= 2;
-
-#if defined(FINGERPAD_HAS_VECTORS)
-/// Four bytes or 16-bit numbers as 32-bit ones, which avoids a general register in GCC 12.
-template <narrow_integer T>
-[[gnu::always_inline]] inline lanes<std::int32_t, 4> load_four(const T* from) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, from, 4 * sizeof(T));
-  const lanes<std::uint64_t, 2> words{word, 0};
-  using Shorts = lanes<std::uint16_t, 8>;
-  Shorts cells = Shorts(words);
-  if constexpr (sizeof(T) == 1) {
-    using Bytes = lanes<std::uint8_t, 16>;
-    cells = Shorts(__builtin_shufflevector(Bytes(words), Bytes{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20,
-                                           5, 21, 6, 22, 7, 23));
-  }
-  return lanes<std::int32_t, 4>(__builtin_shufflevector(cells, Shorts{}, 0, 8, 1, 9, 2, 10, 3, 11));
-}
-#endif
-
 /// Cells from[0], from[1], ... as one V of S.
-template <class V, class S, class T>
-[[gnu::always_inline]] inline V load_cells(const T* from) {
+template <class V, class S>
+[[gnu::always_inline]] inline V load_cells(const S* from) {
   if constexpr (std::same_as<V, S>) {
-    return static_cast<S>(*from);
-  } else if constexpr (std::same_as<S, T>) {
-    return load<V>(from);
-  } else if constexpr (narrow_integer<T> && std::floating_point<S>) {
-    constexpr int n = lanes_in<V, S>;
-    if constexpr (n == 4) {
-      return each_as<V>(load_four(from));
-    } else {
-      const auto cells = each_as<lanes<std::uint16_t, n>>(load<lanes<T, n>>(from));
-      return each_as<V>(each_as<lanes<std::int32_t, n>>(cells));
-    }
+    return *from;
   } else {
-    return each_as<V>(load<lanes<T, lanes_in<V, S>>>(from));
+    return load<V>(from);
   }
 }
 
-/// Stores the cells of v in to[0], to[1], ..., truncated if T is an integer.
+/// Stores the cells of v in to[0], to[1], ..., truncated if T is a byte.
 template <class S, class V, class T>
 [[gnu::always_inline]] inline void store_cells(T* to, const V& v) {
-  if constexpr (std::same_as<V, S>) {
-    if constexpr (std::integral<T> && scalar<S>) {
-      *to = static_cast<T>(value(v));
-    } else {
-      *to = static_cast<T>(v);
-    }
+  if constexpr (std::same_as<V, S> && std::same_as<T, std::uint8_t>) {
+    *to = static_cast<T>(value(v));
+  } else if constexpr (std::same_as<V, S>) {
+    *to = v;
   } else if constexpr (std::same_as<S, T>) {
     store(to, v);
-  } else if constexpr (narrow_integer<T>) {
+  } else {  // by a factor of two at a time: machines have instructions for these steps
     constexpr int n = lanes_in<V, S>;
     const auto words = each_as<lanes<std::int32_t, n>>(v);
     store(to, each_as<lanes<T, n>>(each_as<lanes<std::uint16_t, n>>(words)));
-  } else {
-    store(to, each_as<lanes<T, lanes_in<V, S>>>(v));
   }
 }
 
