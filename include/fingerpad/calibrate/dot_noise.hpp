@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
+#include <iterator>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -35,8 +35,10 @@ struct [[nodiscard]] DotNoise {
 };
 
 /// Frames in a row, such as std::vector<cv::Mat_<cv::Vec2d>>.
-template <class F>
-concept dot_frames = std::ranges::random_access_range<F> && dot_grid<std::ranges::range_value_t<F>>;
+template <class F> concept dot_frames = requires(const F& frames) {
+  { *(std::begin(frames) + 1) } -> dot_grid;
+  std::size(frames);
+};
 
 /// The noise in `frames_px`, dot grids of one size, of a pad at rest. The motion of the whole
 /// pattern does not count, so a shaking camera does no harm, nor do lost dots. Steps longer than a
@@ -46,11 +48,11 @@ concept dot_frames = std::ranges::random_access_range<F> && dot_grid<std::ranges
 template <scalar S = double, dot_frames Frames>
 DotNoise<S> dot_noise(const Frames& frames_px) {
   using std::sqrt;
-  using P = cell_t<std::ranges::range_value_t<Frames>>;
+  using P = cell_t<decltype(*std::begin(frames_px))>;
   const char* const owner = "dot_noise";
-  const auto frames = static_cast<Index>(std::ranges::size(frames_px));
+  const auto frames = static_cast<Index>(std::size(frames_px));
   expects(frames >= 2, owner, "frames", static_cast<long long>(frames), ">= 2");
-  const auto frame = [&](Index t) { return as_view(std::ranges::begin(frames_px)[t]); };
+  const auto frame = [&](Index t) { return as_view(*(std::begin(frames_px) + t)); };
   const Index rows = frame(0).rows(), cols = frame(0).cols();
   expects_grid_size(owner, rows, cols);
   for (Index t = 0; t < frames; ++t) {
