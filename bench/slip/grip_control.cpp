@@ -38,14 +38,14 @@ struct Calls {
 /// Grip control of one fingertip in an endless sequence of calls.
 template <class S>
 struct Gripping {
-  GripControl<S> control{{}, S(3)};
+  GripControl<S> first{{}, S(3)}, control = first;
   Calls calls = {};
 
   S next() {
     const auto update = calls.k % 4 == 0 ? RatioUpdate::fresh : RatioUpdate::unmoved;
     const S force = control(S(calls.next()), update, S(0.01)).force_n;
     if (calls.k % 64 == 0) {
-      control.begin(S(3));
+      control = first;
     }
     return force;
   }

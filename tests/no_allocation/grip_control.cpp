@@ -14,8 +14,8 @@ TEST_CASE("grip control: nothing allocates", "[grip_control]") {
   for (int k = 0; k < 300; ++k) {
     const double ratio = k % 7 == 0 ? not_a_number<double>() : 0.004 * (k % 250);
     force_n += control(ratio, static_cast<RatioUpdate>(k % 3), 0.01).force_n;
-    auto bookmark = control;
-    bookmark.begin(1);
+    const auto bookmark = control;
+    force_n += bookmark.force_n();
   }
   const long after = test::allocations();
   CHECK(force_n > 0);

@@ -95,8 +95,9 @@ struct [[nodiscard]] GripResult {
   bool ok() const { return why != GripReason::blind && why != GripReason::lost; }
 };
 
-/// Grip force of one finger, call by call. A value: copy it to return to this call later. A call is
-/// O(1), allocates nothing, throws nothing, and reacts to slip at once.
+/// Grip force of one finger on one object, call by call. A value: copy it to return to this call
+/// later, and construct another when another object is grasped. A call is O(1), allocates nothing,
+/// throws nothing, and reacts to slip at once.
 template <scalar S = double>
 class GripControl {
  public:
@@ -114,8 +115,6 @@ class GripControl {
   /// L*, the friction demanded of the contact; NaN if the tangential force was never known.
   const S& friction() const { return friction_; }
 
-  /// Forgets everything: another object is grasped, with this force.
-  void begin(const S& force_n) { *this = GripControl(options_, force_n); }
   /// Sets the force from which the next call continues. Use it if the gripper does not follow the
   /// commands and its force is measured. Ignored if not finite.
   void follow(const S& measured_n) {
