@@ -342,7 +342,9 @@ class RimCalibration {
         const S cosine = sqrt(square(s.lm) / (s.ll * s.mm));
         const S condition = sqrt((S(1) + cosine) / (S(1) - cosine));
         expects(is_finite(condition) && as_double(condition) < 1e4, owner, "condition number",
-                condition, "< 1e4: the side dots have to stretch more at the higher pressure");
+                condition,
+                "< 1e4: the side dots have to stretch more at the higher pressure; check "
+                "pressures and dots");
         const S determinant = s.ll * s.mm - s.lm * s.lm;
         longer = (s.mf * s.lm - s.lf * s.mm) / determinant;
         stiffer = (s.lf * s.lm - s.mf * s.ll) / determinant;
