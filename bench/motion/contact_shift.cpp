@@ -3,7 +3,7 @@
 // Displacement and rotation of a contact from 21 x 21 dots, 69 of them in contact, with 0.005 mm of
 // noise ("ns/pixel" is per dot of the grid). In "stuck" rows every seventh dot stays where it was.
 // Errors: over 1000 contacts of 4 to 9 mm, displaced by up to 1 mm and rotated by up to 0.1 rad.
-#include "fingerpad/published/contact_shift.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
 
 #include <cmath>
 #include <memory>
@@ -17,7 +17,6 @@
 #include "bench/support/run.hpp"
 
 using namespace fingerpad;
-using fingerpad::published::central_dot;
 
 namespace {
 
@@ -81,19 +80,31 @@ std::shared_ptr<Scene<S>> timed_scene(bool stuck) {
   return std::make_shared<Scene<S>>(Motion(), stuck, random);
 }
 
-template <class S, class Dots, class Mean>
-void add(const std::string& name, bool stuck, const Dots& dots, const Mean& mean) {
-  using Shift = ContactShift<Dots, Mean, S>;
+template <class S>
+void add(const std::string& name, bool stuck, const ShiftOptions& options) {
   const auto scene = timed_scene<S>(stuck);
   const bench::Memory memory;
-  const auto shift = std::make_shared<Shift>(Scene<S>::grid(scene->from), dots, mean);
-  const auto workspace = std::make_shared<typename Shift::Workspace>(shift->workspace());
-  const auto of = [=](const Scene<S>& s) {
-    return (*shift)(s.grid(s.to), s.grid(s.touch), *workspace);
-  };
+  const auto shift = std::make_shared<ContactShift<S>>(Scene<S>::grid(scene->from), options);
+  const auto of = [=](const Scene<S>& s) { return (*shift)(s.grid(s.to), s.grid(s.touch)); };
   bench::add(
       name, all_dots, memory.bytes(), [=] { benchmark::DoNotOptimize(of(*scene)); },
       [=](auto& counters) { note<S>(counters, stuck, of); });
+}
+
+/// The displacement of the central dot, and the angle of all dots in contact.
+void add_central_dot(const std::string& name, bool stuck) {
+  const auto scene = timed_scene<double>(stuck);
+  const bench::Memory memory;
+  const auto shift = std::make_shared<ContactShift<double>>(Scene<double>::grid(scene->from),
+                                                            ShiftOptions{.edge_dots = false});
+  const auto of = [=](const Scene<double>& s) {
+    auto result = (*shift)(s.grid(s.to), s.grid(s.touch));
+    result.displacement = s.to[all_dots / 2] - s.from[all_dots / 2];
+    return result;
+  };
+  bench::add(
+      name, all_dots, memory.bytes(), [=] { benchmark::DoNotOptimize(of(*scene)); },
+      [=](auto& counters) { note<double>(counters, stuck, of); });
 }
 
 /// Least squares of rotation, scale and displacement; no dot is far enough off to be an outlier.
@@ -132,17 +143,14 @@ int main(int argc, char** argv) {
   cv::setNumThreads(1);
   for (const bool stuck : {false, true}) {
     const std::string group = stuck ? "stuck dots" : "noise only";
-    add<double>(group + "/central dot, published", stuck, central_dot(side, side), PlainMean());
-    add<float>(group + "/central dot, published, float", stuck, central_dot(side, side),
-               PlainMean());
-    add<double>(group + "/central dot, HuberMean of the angle", stuck, central_dot(side, side),
-                HuberMean());
-    add<double>(group + "/ContactDots", stuck, ContactDots(), PlainMean());
-    add<double>(group + "/ContactDots, HuberMean", stuck, ContactDots(), HuberMean());
-    add<double>(group + "/EdgeDots, the default", stuck, EdgeDots(), PlainMean());
-    add<float>(group + "/EdgeDots, the default, float", stuck, EdgeDots(), PlainMean());
-    add<double>(group + "/EdgeDots, HuberMean", stuck, EdgeDots(), HuberMean());
-    add<float>(group + "/EdgeDots, HuberMean, float", stuck, EdgeDots(), HuberMean());
+    add_central_dot(group + "/central dot, published", stuck);
+    add<double>(group + "/dots in contact", stuck, {.edge_dots = false});
+    add<double>(group + "/dots in contact, robust", stuck,
+                {.edge_dots = false, .robust_passes = 10});
+    add<double>(group + "/dots of the edge, the default", stuck, {});
+    add<float>(group + "/dots of the edge, the default, float", stuck, {});
+    add<double>(group + "/dots of the edge, robust", stuck, {.robust_passes = 10});
+    add<float>(group + "/dots of the edge, robust, float", stuck, {.robust_passes = 10});
     bench::add_streaming(group, all_dots);
     add_opencv(group + "/cv::estimateAffinePartial2D of the dots in contact", stuck);
   }

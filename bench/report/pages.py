@@ -66,11 +66,11 @@ COMPARED = [
     ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap"),
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
      "published: ObjectMotion", "ObjectMotion, double, the default"),
-    ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published policies, float",
+    ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published: StickRatio",
      "StickConsensus, ResidualMean, float, the default"),
     ("force along the pad", "wrench", "72 side dots", "published: segments", "double, the default"),
     ("shift of a rigid contact", "contact_shift", "noise only", "central dot, published",
-     "EdgeDots, the default"),
+     "dots of the edge, the default"),
     ("lift of a modelled object", "foam_contact", "lift, 2000 steps",
      "published: printed, trapezoidal rule", "causal_response, the default"),
 ]

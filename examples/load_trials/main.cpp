@@ -26,15 +26,12 @@ using load_trials::Load;
 using Samples = std::vector<ForceSample<double>>;
 
 /// Mean displacement of the dots over all repeats, in px.
-template <class Mean>
-Samples samples_of(const std::vector<Load>& loads, const Mean& mean) {
-  using Shift = fingerpad::ContactShift<fingerpad::ContactDots, Mean>;
+Samples samples_of(const std::vector<Load>& loads, const fingerpad::ShiftOptions& options) {
   Samples samples;
   for (const Load& load : loads) {
-    const Shift shift(load.from, {}, mean);
-    auto workspace = shift.workspace();
+    fingerpad::ContactShift shift(load.from, options);
     const cv::Mat_<unsigned char> all(load.to.size(), static_cast<unsigned char>(1));
-    const auto moved = shift(load.to, all, workspace);
+    const auto moved = shift(load.to, all);
     samples.push_back({.measure = 1,
                        .displacement_mm = moved.displacement,
                        .tangential_force_n = {load.fx_n, load.fz_n},
@@ -87,12 +84,11 @@ struct Displaced {
   Samples all;
 };
 
-template <class Mean>
-Displaced displaced(const std::vector<Load>& loads, const Mean& mean) {
+Displaced displaced(const std::vector<Load>& loads, const fingerpad::ShiftOptions& options) {
   std::vector<Load> single;
   std::copy_if(loads.begin(), loads.end(), std::back_inserter(single),
                [](const Load& load) { return load.single_axis; });
-  return {samples_of(single, mean), samples_of(loads, mean)};
+  return {samples_of(single, options), samples_of(loads, options)};
 }
 
 template <class Fit>
@@ -115,8 +111,9 @@ auto linear_map(bool robust) {
 
 int run(const std::string& folder, double threshold) {
   const std::vector<Load> loads = load_trials::loads_of(folder);
-  const Displaced robust = displaced(loads, fingerpad::HuberMean{.threshold = threshold});
-  const Displaced plain = displaced(loads, fingerpad::PlainMean{});
+  const Displaced robust =
+      displaced(loads, {.edge_dots = false, .robust_passes = 10, .threshold = threshold});
+  const Displaced plain = displaced(loads, {.edge_dots = false});
   std::printf(
       "%zu loads tilted about one axis, %zu in all. Each load is left out of the fit once.\n"
       "Mean absolute error in N                one axis: fx       fz    all: fx       fz\n",

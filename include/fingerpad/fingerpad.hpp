@@ -38,7 +38,6 @@
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "fingerpad/published/contact_region.hpp"
-#include "fingerpad/published/contact_shift.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/neighbour_light.hpp"

@@ -113,13 +113,11 @@ TEST_CASE("shift of the contact from every grid", "[adapt]") {
     return out;
   };
   const auto free = flat(test::traction_scenes()[0].dots), now = flat(scene.dots);
-  const ContactShift<> shift(free);
-  auto workspace = shift.workspace();
-  const auto truth = shift(now, scene.contact, workspace);
+  ContactShift<> shift(free);
+  const auto truth = shift(now, scene.contact);
   const auto check = [&](const auto& from, const auto& dots, const auto& contact) {
-    const ContactShift<> other(from);
-    auto own = other.workspace();
-    const auto r = other(dots, contact, own);
+    ContactShift<> other(from);
+    const auto r = other(dots, contact);
     CHECK(same_bits(r.displacement.x, truth.displacement.x));
     CHECK(same_bits(r.displacement.y, truth.displacement.y));
     CHECK(same_bits(r.rotation_rad, truth.rotation_rad));

@@ -266,14 +266,13 @@ std::string said_by_motion(const Mistake& mistake) {
 }
 
 std::string said_by_shift(const Mistake& mistake) {
-  std::optional<ContactShift<ContactDots>> shift;
+  std::optional<ContactShift<>> shift;
   std::string said;
   drag(mistake, [&](const PointsPx& dots, const ContactFlags& contact) {
     if (!shift) {
-      shift.emplace(dots);
+      shift.emplace(dots, ShiftOptions{.edge_dots = false});
     }
-    auto workspace = shift->workspace();
-    const auto r = (*shift)(dots, contact, workspace);
+    const auto r = (*shift)(dots, contact);
     const bool is_true = !r.ok() || is_true_way(r.displacement.x, r.displacement.y, 1);
     said = is_true ? name_of(r.status) : "another shift";
   });
@@ -373,7 +372,7 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
         refusal([&] { const StickRatio<> r(rows, cols); }),
         refusal([&] { const SpatialStickRatio<> r(rows, cols); }),
         refusal([&] { const ObjectMotion<> r(rows, cols); }),
-        refusal([&] { const ContactShift<ContactDots> r(px); }),
+        refusal([&] { const ContactShift<> r(px); }),
         refusal([&] { const Recoil<> r(px); }),
         refusal([&] { const ContactSlide<> r(rows, cols, 9, 9); }),
         refusal([&] { const ContactSlide<> r(60, 80, rows, cols); }),

@@ -128,8 +128,7 @@ void tell_dots(Results& tell) {
   }
   const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
   ObjectMotion<> motion(9, 9);
-  static const ContactShift<> shift(view(free));
-  auto shift_work = shift.workspace();
+  ContactShift<> shift(view(free));
   static const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
   auto maps = field.maps();
   static const SpatialStickRatio<> stick(9, 9);
@@ -138,7 +137,7 @@ void tell_dots(Results& tell) {
   for (int frame = 0; frame < 8; ++frame) {
     auto now = dots_moved<Point>(0.1 * frame, 0.02 * frame);
     const auto moved = motion(view(now), contact);
-    const auto shifted = shift(view(now), contact, shift_work);
+    const auto shifted = shift(view(now), contact);
     const auto ratio =
         stick(view(now), contact, StridedView<DotState>(states.data(), 9, 9, 9), stick_state);
     const auto load = field(view(now), contact, 0.01, maps);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/published/contact_shift.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
+#include "support/shift_ways.hpp"
 
 namespace test {
 
@@ -32,10 +33,13 @@ Dual<Real> atan2(const Dual<Real>& y, const Dual<Real>& x) {
 }  // namespace test
 
 using namespace fingerpad;
-using fingerpad::published::central_dot;
-using fingerpad::published::OneDot;
+using test::ContactDots;
 using test::Digits50;
+using test::EdgeDots;
+using test::HuberMean;
 using test::Image;
+using test::PlainMean;
+using test::shift_by;
 
 namespace {
 
@@ -87,34 +91,23 @@ Mask disc(Index rows = 21, Index cols = 21, double radius = 5.2) {
 }
 constexpr Index in_disc = 89;
 
-template <class Dots>
-Dots choice_for(Index rows, Index cols) {
-  if constexpr (std::is_same_v<Dots, OneDot>) {
-    return central_dot(rows, cols);
-  } else {
-    return {};
-  }
-}
-
 /// Shift of one frame.
 template <class Dots, class Mean = PlainMean, class S = double, class Free, class Grid, class Flags>
 ShiftResult<S> shift(const Free& free, const Grid& dots, const Flags& contact) {
-  const ContactShift<Dots, Mean, S> estimator(free, choice_for<Dots>(rows(free), cols(free)));
-  auto workspace = estimator.workspace();
-  return estimator(dots, contact, workspace);
+  ContactShift<S> estimator(free, shift_by<Dots, Mean>());
+  return estimator(dots, contact);
 }
 
 /// The dots that take part: those whose position matters.
 template <class Dots, class Flags>
 Mask taking_part(const Points& dots, const Flags& contact) {
-  const ContactShift<Dots> estimator(dots, choice_for<Dots>(dots.rows(), dots.cols()));
-  auto workspace = estimator.workspace();
+  ContactShift<> estimator(dots, shift_by<Dots>());
   Mask part(dots.rows(), dots.cols(), 0);
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j < dots.cols(); ++j) {
       Points pushed = dots;
       pushed(i, j).x += 1;
-      const auto r = estimator(pushed, contact, workspace);
+      const auto r = estimator(pushed, contact);
       part(i, j) = r.has_displacement() && r.displacement.x > 0.005 ? 1 : 0;
     }
   }
@@ -139,9 +132,7 @@ TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
                    (Way<EdgeDots, PlainMean>),
                    (Way<EdgeDots, HuberMean>),
                    (Way<ContactDots, PlainMean>),
-                   (Way<ContactDots, HuberMean>),
-                   (Way<OneDot, PlainMean>),
-                   (Way<OneDot, HuberMean>)) {
+                   (Way<ContactDots, HuberMean>)) {
   using Dots = typename TestType::Dots;
   using Mean = typename TestType::Mean;
   const Points free = printed();
@@ -156,10 +147,7 @@ TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
     CHECK(r.dots == (std::is_same_v<Dots, EdgeDots> ? 88 : in_disc));
     CHECK(r.rotation_rad == Approx(motion.angle_rad).epsilon(1e-14).margin(1e-15));
     CHECK(r.residual_rms < 1e-14);
-    if (std::is_same_v<Dots, OneDot>) {
-      CHECK(r.displacement.x == dots(10, 10).x - free(10, 10).x);
-      CHECK(r.displacement.y == dots(10, 10).y - free(10, 10).y);
-    } else if (motion.angle_rad == 0) {
+    if (motion.angle_rad == 0) {
       CHECK(r.displacement.x == Approx(motion.x).margin(1e-14));
       CHECK(r.displacement.y == Approx(motion.y).margin(1e-14));
     }
@@ -181,8 +169,7 @@ TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
 TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
                    "[contact_shift]",
                    EdgeDots,
-                   ContactDots,
-                   OneDot) {
+                   ContactDots) {
   const Points free = printed();
   for (const double angle : {pi - 1e-7, pi - 0.01, -pi + 1e-7, -pi + 0.01, 3.0, -3.0}) {
     // noise that moves some of the dots across the cut and not others
@@ -235,49 +222,6 @@ TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift
   r = shift<ContactDots>(free, dots, all);
   CHECK(r.rotation_rad == 0);
   CHECK(r.residual_rms == 0.5);
-}
-
-TEST_CASE("contact shift: one dot", "[contact_shift]") {
-  const Points free = printed();
-  const Points dots = moved(free, {0.2, 1, -0.5});
-  const Mask contact = disc(), none(21, 21, 0);
-  CHECK(central_dot(21, 21).dot == DotIndex{10, 10});
-  CHECK(central_dot(8, 5).dot == DotIndex{4, 2});
-  CHECK(central_dot(1, 1).dot == DotIndex{0, 0});
-  const auto by = [&](const DotIndex& dot, const Points& frame, const Mask& mask) {
-    const ContactShift estimator(free, OneDot{dot});
-    auto workspace = estimator.workspace();
-    return estimator(frame, mask, workspace);
-  };
-  // the displacement of that dot, in contact or not; the angle is that of the dots in contact
-  for (const DotIndex dot : {DotIndex{10, 10}, {8, 12}, {0, 0}, {20, 3}}) {
-    const auto r = by(dot, dots, contact);
-    CHECK(r.status == ShiftStatus::measured);
-    CHECK(r.dots == in_disc);
-    CHECK(r.displacement.x == dots(dot.row, dot.col).x - free(dot.row, dot.col).x);
-    CHECK(r.displacement.y == dots(dot.row, dot.col).y - free(dot.row, dot.col).y);
-    CHECK(r.rotation_rad == Approx(0.2).epsilon(1e-14));
-  }
-  // without contact it still has the displacement, but no rotation
-  auto r = by({10, 10}, dots, none);
-  CHECK(r.status == ShiftStatus::one_place_only);
-  CHECK(r.displacement.x == dots(10, 10).x - free(10, 10).x);
-  CHECK(std::isnan(r.rotation_rad));
-  CHECK(r.dots == 0);
-  // a lost dot
-  Points lost = dots;
-  lost(10, 10).y = test::nan;
-  r = by({10, 10}, lost, contact);
-  CHECK(r.status == ShiftStatus::no_dots);
-  CHECK(!r.has_displacement());
-  CHECK(std::isnan(r.displacement.x));
-  CHECK(std::isnan(r.displacement.y));
-  CHECK(by({10, 11}, lost, contact).status == ShiftStatus::measured);
-  Points holes = free;
-  holes(10, 10).x = infinity;
-  r = shift<OneDot>(holes, dots, contact);
-  CHECK(r.status == ShiftStatus::no_dots);
-  CHECK(std::isnan(r.displacement.x));
 }
 
 TEST_CASE("contact shift: the dots on both sides of the edge", "[contact_shift]") {
@@ -567,14 +511,13 @@ TEMPLATE_TEST_CASE("contact shift: too few dots for an angle, or for anything",
   }
 }
 
-TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift]") {
+TEST_CASE("contact shift: grids of another size, and copies", "[contact_shift]") {
   const Points free = printed(5, 6);
-  const ContactShift estimator(free, ContactDots());
+  ContactShift estimator(free, shift_by<ContactDots>());
   CHECK(estimator.rows() == 5);
   CHECK(estimator.cols() == 6);
-  auto workspace = estimator.workspace();
   const auto refused = [&](const Points& dots, const Mask& mask) {
-    const auto r = estimator(dots, mask, workspace);
+    const auto r = estimator(dots, mask);
     return r.status == ShiftStatus::refused && has_no_answer(r);
   };
   CHECK(refused(printed(6, 5), Mask(6, 5, 1)));
@@ -584,18 +527,8 @@ TEST_CASE("contact shift: grids and workspaces of another size", "[contact_shift
   CHECK(refused(free, Mask(5, 7, 1)));
   CHECK(refused(Points(), Mask()));
   CHECK(!refused(free, Mask(5, 6, 1)));
-
-  // a workspace of a smaller grid, which would have to grow
-  const ContactShift small(printed(3, 3), ContactDots());
-  auto its = small.workspace();
-  const auto r = estimator(free, Mask(5, 6, 1), its);
-  CHECK(r.status == ShiftStatus::refused);
-  CHECK(has_no_answer(r));
-  CHECK(small(printed(3, 3), Mask(3, 3, 1), its).dots == 9);  // still usable
-  decltype(its) nothing;
-  CHECK(estimator(free, Mask(5, 6, 1), nothing).status == ShiftStatus::refused);
-  // a larger workspace is accepted
-  CHECK(small(printed(3, 3), Mask(3, 3, 1), workspace).status == ShiftStatus::measured);
+  auto copy = estimator;
+  CHECK(copy(free, Mask(5, 6, 1)).dots == 30);
 }
 
 namespace {
@@ -710,10 +643,9 @@ TEST_CASE("contact shift: a robust mean without outliers is the plain one", "[co
   CHECK(wrong_robust < 1.3 * wrong_plain);
   CHECK(apart < 0.3 * wrong_plain);
   // a threshold that no residual reaches
-  const ContactShift wide(free, ContactDots(), HuberMean{.threshold = 1e6});
-  auto workspace = wide.workspace();
+  ContactShift wide(free, shift_by<ContactDots>(HuberMean{.threshold = 1e6}));
   const Points dots = with_mistakes(free, contact, {0.1, 1, 0}, 0.2, Mistake::stuck, random);
-  const auto a = wide(dots, contact, workspace), b = shift<ContactDots>(free, dots, contact);
+  const auto a = wide(dots, contact), b = shift<ContactDots>(free, dots, contact);
   CHECK(a.displacement.x == b.displacement.x);
   CHECK(a.rotation_rad == b.rotation_rad);
 }
@@ -741,26 +673,16 @@ TEST_CASE("contact shift: a pair in a row or in a column is pulled apart as far"
 
 TEST_CASE("contact shift: bad parameters are refused by name", "[contact_shift]") {
   const Points free = printed(5, 6);
-  const auto one = [&](Index row, Index col) {
-    return test::refusal([&] { ContactShift(free, OneDot{{row, col}}); });
-  };
-  CHECK(one(4, 5) == "accepted");
-  CHECK(one(-1, 0) == "OneDot: row = -1, must be in [0, rows)");
-  CHECK(one(5, 0) == "OneDot: row = 5, must be in [0, rows)");
-  CHECK(one(0, -1) == "OneDot: col = -1, must be in [0, cols)");
-  CHECK(one(0, 6) == "OneDot: col = 6, must be in [0, cols)");
-  CHECK(test::refusal([&] { ContactShift(free, OneDot()); }) ==
-        "OneDot: row = -1, must be in [0, rows)");
   const auto huber = [&](double threshold, int passes) {
-    return test::refusal([&] { ContactShift(free, EdgeDots(), HuberMean{threshold, passes}); });
+    return test::refusal(
+        [&] { ContactShift(free, {.robust_passes = passes, .threshold = threshold}); });
   };
-  CHECK(huber(1.5, 1) == "accepted");
+  CHECK(huber(1.5, 0) == "accepted");
   CHECK(huber(1.5, 100) == "accepted");
-  CHECK(huber(0, 10) == "HuberMean: threshold = 0, must be > 0");
-  CHECK(huber(-1, 10) == "HuberMean: threshold = -1, must be > 0");
-  CHECK(test::begins_with(huber(test::nan, 10), "HuberMean: threshold = "));
-  CHECK(huber(1.5, 0) == "HuberMean: passes = 0, must be in [1, 100]");
-  CHECK(huber(1.5, 101) == "HuberMean: passes = 101, must be in [1, 100]");
+  CHECK(huber(0, 10) == "ContactShift: threshold = 0, must be finite and > 0");
+  CHECK(test::begins_with(huber(test::nan, 10), "ContactShift: threshold = "));
+  CHECK(huber(1.5, -1) == "ContactShift: robust_passes = -1, must be in [0, 100]");
+  CHECK(huber(1.5, 101) == "ContactShift: robust_passes = 101, must be in [0, 100]");
 }
 
 TEST_CASE("contact shift: names", "[contact_shift]") {
@@ -768,10 +690,8 @@ TEST_CASE("contact shift: names", "[contact_shift]") {
   CHECK(std::string(name_of(ShiftStatus::one_place_only)) == "one place only");
   CHECK(std::string(name_of(ShiftStatus::no_dots)) == "no dots");
   CHECK(std::string(name_of(ShiftStatus::refused)) == "refused");
-  CHECK(std::string(name_of(static_cast<ShiftStatus>(77))) == "unknown");
   CHECK(has_no_answer(ShiftResult<double>()));
-  static_assert(
-      std::is_same_v<decltype(ContactShift(Points())), ContactShift<EdgeDots, PlainMean, double>>);
+  static_assert(std::is_same_v<decltype(ContactShift(Points())), ContactShift<double>>);
 }
 
 namespace {
@@ -857,8 +777,7 @@ TEMPLATE_TEST_CASE("contact shift: follows 50 digits", "[contact_shift]", PlainM
 TEMPLATE_TEST_CASE("contact shift: derivatives are those of differences",
                    "[contact_shift]",
                    EdgeDots,
-                   ContactDots,
-                   OneDot) {
+                   ContactDots) {
   const Points free = printed(9, 9);
   test::Random random(5);
   Points dots = moved(free, {0.2, 0.5, -1});

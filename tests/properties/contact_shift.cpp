@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Properties of the shift of every contact, for any dots.
-#include "fingerpad/published/contact_shift.hpp"
+#include "fingerpad/motion/contact_shift.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,15 @@
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
+#include "support/shift_ways.hpp"
 
 using namespace fingerpad;
-using fingerpad::published::central_dot;
-using fingerpad::published::OneDot;
+using test::ContactDots;
+using test::EdgeDots;
+using test::HuberMean;
 using test::Image;
+using test::PlainMean;
+using test::shift_by;
 
 namespace {
 
@@ -98,13 +102,8 @@ Scene any_scene(double noise_mm = 0.05) {
 
 template <class Dots, class Mean>
 ShiftResult<double> shift(const Scene& s, const Mean& mean = {}) {
-  Dots choice{};
-  if constexpr (std::is_same_v<Dots, OneDot>) {
-    choice = central_dot(s.free.rows(), s.free.cols());
-  }
-  const ContactShift estimator(s.free, choice, mean);
-  auto workspace = estimator.workspace();
-  return estimator(s.dots, s.contact, workspace);
+  ContactShift estimator(s.free, shift_by<Dots>(mean));
+  return estimator(s.dots, s.contact);
 }
 
 /// Distance of two angles, modulo a full turn.
@@ -133,8 +132,7 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
                    (Way<EdgeDots, PlainMean>),
                    (Way<EdgeDots, HuberMean>),
                    (Way<ContactDots, PlainMean>),
-                   (Way<ContactDots, HuberMean>),
-                   (Way<OneDot, PlainMean>)) {
+                   (Way<ContactDots, HuberMean>)) {
   rc::prop("rotated and shifted with all dots of both frames, the shift turns with them", [] {
     const Scene s = any_scene();
     const Rigid view = any_motion();
@@ -181,8 +179,7 @@ TEMPLATE_TEST_CASE("contact shift: motions add",
                    (Way<EdgeDots, PlainMean>),
                    (Way<EdgeDots, HuberMean>),
                    (Way<ContactDots, PlainMean>),
-                   (Way<ContactDots, HuberMean>),
-                   (Way<OneDot, PlainMean>)) {
+                   (Way<ContactDots, HuberMean>)) {
   rc::prop("a rigid motion has its angle, and carries the dots' middle along", [] {
     Scene s = any_scene();
     const Rigid motion = any_motion();
@@ -367,9 +364,9 @@ TEMPLATE_TEST_CASE("contact shift: whatever the dots, the answer says what it is
         p = {any_coordinate(), any_coordinate()};
       }
     }
-    const auto check = [&](const auto& estimator) {
-      auto workspace = estimator.workspace();
-      const auto r = estimator(dots, contact, workspace);
+    const auto check = [&](const ShiftOptions& options) {
+      ContactShift<S> estimator(free, options);
+      const auto r = estimator(dots, contact);
       RC_ASSERT(r.status != ShiftStatus::refused);
       RC_ASSERT(r.dots >= 0 && r.dots <= rows * cols);
       RC_ASSERT(is_finite(r.displacement.x) == r.has_displacement());
@@ -384,13 +381,9 @@ TEMPLATE_TEST_CASE("contact shift: whatever the dots, the answer says what it is
         RC_ASSERT(!is_finite(r.rotation_rad));
       }
     };
-    check(ContactShift<EdgeDots, PlainMean, S>(free));
-    check(ContactShift<EdgeDots, HuberMean, S>(free));
-    check(ContactShift<ContactDots, PlainMean, S>(free));
-    check(ContactShift<ContactDots, HuberMean, S>(free));
-    if (rows > 0 && cols > 0) {
-      check(ContactShift<OneDot, PlainMean, S>(free, central_dot(rows, cols)));
-      check(ContactShift<OneDot, HuberMean, S>(free, central_dot(rows, cols)));
-    }
+    check(shift_by<EdgeDots, PlainMean>());
+    check(shift_by<EdgeDots, HuberMean>());
+    check(shift_by<ContactDots, PlainMean>());
+    check(shift_by<ContactDots, HuberMean>());
   });
 }

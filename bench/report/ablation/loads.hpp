@@ -179,8 +179,8 @@ inline std::vector<Effect> look_up_effects() {
   add({.name = "dots of the edge",
        .quantity = "tangential force by area",
        .unit = "N",
-       .on = "`EdgeDots`",
-       .off = "`published::OneDot`"},
+       .on = "`ShiftOptions::edge_dots`",
+       .off = "the central dot"},
       ContactMeasure::area, edge, center, tangential_force_of(ContactMeasure::area, edge, true),
       tangential_force_of(ContactMeasure::area, center, true));
   return effects;
@@ -215,17 +215,15 @@ inline Effect huber_effect() {
   Effect e{.name = "robust mean",
            .quantity = "displacement of the contact",
            .unit = "mm",
-           .on = "`ContactShift<EdgeDots, HuberMean>`",
-           .off = "`PlainMean`"};
+           .on = "`ShiftOptions::robust_passes` 10",
+           .off = "0"};
   const auto free = in_plan(test::traction_scene("free").dots);
-  const ContactShift<EdgeDots, HuberMean> robust(free);
-  const ContactShift<EdgeDots, PlainMean> plain(free);
-  auto robust_work = robust.workspace();
-  auto plain_work = plain.workspace();
+  ContactShift robust(free, {.robust_passes = 10});
+  ContactShift plain(free);
   PlaneDots timed = free;
   const auto note = [&](const test::TractionScene& s, Scene where, double noise_mm, bool mistakes) {
     const auto exact = in_plan(s.dots);
-    const auto truth = plain(exact, s.contact, plain_work).displacement;
+    const auto truth = plain(exact, s.contact).displacement;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       test::Random random(seed);
       PlaneDots seen = exact;
@@ -239,8 +237,8 @@ inline Effect huber_effect() {
       const auto off = [&](const auto& r) {
         return std::hypot(r.displacement.x - truth.x, r.displacement.y - truth.y);
       };
-      e.with_in(where).add(off(robust(seen, s.contact, robust_work)));
-      e.without_in(where).add(off(plain(seen, s.contact, plain_work)));
+      e.with_in(where).add(off(robust(seen, s.contact)));
+      e.without_in(where).add(off(plain(seen, s.contact)));
       timed = seen;
     }
   };
@@ -252,8 +250,7 @@ inline Effect huber_effect() {
     }
   }
   const auto contact = test::traction_scene("drag").contact;
-  e.cost_us = cost_us([&] { (void)robust(timed, contact, robust_work); },
-                      [&] { (void)plain(timed, contact, plain_work); });
+  e.cost_us = cost_us([&] { (void)robust(timed, contact); }, [&] { (void)plain(timed, contact); });
   return e;
 }
 

@@ -277,7 +277,6 @@ struct FingertipFlatArea {
 template <bool by_flat_area>
 struct FingertipLookUp {
   std::optional<ContactShift<>> shift;  // empty without dots
-  std::optional<ContactShift<>::Workspace> work;
   std::optional<FingertipOptions::NormalLookUp> of_area, of_depth;
   std::optional<FingertipOptions::ShearLookUp> of_shift;
   bool shear_by_depth;
@@ -289,7 +288,6 @@ struct FingertipLookUp {
         shear_by_depth(o.shear_by_depth) {
     if (o.free_dots_mm.rows() * o.free_dots_mm.cols() > 0) {
       shift.emplace(o.free_dots_mm);
-      work.emplace(shift->workspace());
     }
   }
   bool answers(const FingertipResult& touch) const {
@@ -307,7 +305,7 @@ struct FingertipLookUp {
   template <class Dots>
   void look_up(const Dots& dots, bool pressed, FingertipResult& touch) {
     if (shift) {
-      touch.shift = (*shift)(dots.at_mm.view(), dots.touching.view(), *work);
+      touch.shift = (*shift)(dots.at_mm.view(), dots.touching.view());
     }
     // an unknown shift counts as 0: the compensation is small compared with the force
     const auto known = [](double x) { return is_finite(x) ? x : 0; };
