@@ -229,6 +229,25 @@ TEST_CASE("wrench: a line whose rim point is the center of the contact has no di
       touching([&](double x, double y) { return std::hypot(x + film.radius_mm, y) < step; }));
 }
 
+TEST_CASE("wrench: an odd contact gets the same answer after any other frame", "[wrench]") {
+  const auto ring = touching([](double x, double y) {
+    const double r = std::hypot(x - 2, y);
+    return r > 4 && r < 5;
+  });
+  const auto beyond = touching([](double x, double) { return x < -9; });
+  const auto two = touching([](double x, double y) { return std::hypot(x, y) > 15; });
+  for (const Shape& odd : {ring, beyond, two}) {
+    Wrench<> fresh(rim_of(film).borders()), used = fresh;
+    (void)used(pressed(), good_dots(), pressed_mpa);
+    const auto first = fresh(odd, good_dots(), pressed_mpa);
+    const auto later = used(odd, good_dots(), pressed_mpa);
+    CHECK(first.status == later.status);
+    CHECK(test::same_bits(first.force_n.z, later.force_n.z));
+    CHECK(test::same_bits(first.moment_n_mm.x, later.moment_n_mm.x));
+    CHECK(consistent(first));
+  }
+}
+
 TEST_CASE("wrench: odd contacts", "[wrench]") {
   // contact that reaches the rim all around, and on one side
   (void)measure(touching([](double, double) { return true; }));

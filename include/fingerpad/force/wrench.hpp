@@ -389,7 +389,8 @@ class Wrench {
     S top = S(0);
     for (std::size_t k = 0; k < rim_.size(); ++k) {
       if (whole_[k] != 0 && value(lines_[k].edge) > 0) {
-        summit_[k] = point_on(shape, middle, lines_[k], edge_of(lines_[k], growth));
+        const Point3<S> end = point_on(shape, middle, lines_[k], edge_of(lines_[k], growth));
+        summit_[k] = is_finite(end) ? end : summit_[k];
       }
       top = whole_[k] != 0 && summit_[k].z > top ? summit_[k].z : top;
     }
@@ -442,8 +443,9 @@ class Wrench {
       }
       const Point2<S> slope = known_slope(here);
       const S rise = -dot(slope, line.outward);
-      if (touches(r)) {
+      if (value(r) >= 0 && touches(r)) {
         line.edge = r;
+        summit_[k] = point_on(shape, middle, line, r);
         const S inside = r - options_.blur_mm - S(1);
         const Point2<S> object = known_slope(at(value(inside) > 0 ? inside : S(0)));
         normal_[k] = {-object.x, -object.y, S(1)};
