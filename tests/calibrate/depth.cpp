@@ -167,7 +167,8 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
   CHECK(twice.fluid.c_green_per_mm == fit.fluid.c_green_per_mm);
   CHECK(twice.fluid.kappa == fit.fluid.kappa);
   CHECK(twice.scattering.coefficient[0] == 2 * fit.scattering.coefficient[0]);
-  CHECK(twice.grey_noise == 2 * fit.grey_noise);
+  CHECK(twice.covariance(0, 0) == fit.covariance(0, 0));
+  CHECK(twice.residual_rms == 2 * fit.residual_rms);
 
   std::vector<DepthSample<long double>> wide;
   for (const auto& s : samples) {
@@ -234,7 +235,8 @@ TEST_CASE("calibration of depth: errors compensate to microns of depth, as predi
     }
     kappa_sq += square(fit.fluid.kappa - sensor.fluid.kappa);
     kappa_predicted_sq += fit.covariance(2, 2);
-    noise_sq += square(fit_absorption<0, double>(samples).grey_noise);
+    noise_sq += square(grey_noise) * fit_absorption<0, double>(samples).covariance(2, 2) /
+                fit.covariance(2, 2);
   }
   for (std::size_t k = 0; k < depths.size(); ++k) {
     const double error = std::sqrt(error_sq[k] / trials);

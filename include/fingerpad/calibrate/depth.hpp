@@ -10,7 +10,7 @@
 // For fixed c_red and delta = c_green - c_red the equation is linear in kappa and in the
 // coefficients of g, which a QR factorisation eliminates (variable projection). The
 // Levenberg-Marquardt method finds the other two, as (ln c_red, delta), so that c_red > 0, with
-// delta held at >= 0. No normal equations are formed.
+// delta held at >= 0.
 //
 // The parameters are far less certain than the depth: their errors compensate to microns of depth
 // (docs/depth/depth.md). The result therefore includes the covariance, from which the error of a
@@ -81,7 +81,6 @@ struct [[nodiscard]] AbsorptionFit {
   Covariance covariance = {};  ///< NaN with as many samples as parameters and no given grey_noise
   S condition = S(0);          ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
   S residual_rms = S(0);       ///< of F, grey levels
-  S grey_noise = S(0);         ///< sd of a colour of weight 1: as given, else from the residuals
   S explained = S(0);          ///< share of the variance that a fit without depths leaves, both per
                                ///< degree of freedom; NaN with as many samples as parameters
   bool delta_at_limit = false;  ///< the best delta would be < 0; it is held at 0
@@ -91,31 +90,17 @@ struct [[nodiscard]] AbsorptionFit {
 
 namespace detail {
 
-/// dW/dc: W/c less the integral of c k z (z + h_m)(z + h_s) exp(-c k z).
+/// dW/dc by parts: l (l + h_m)(l + h_s) exp(-c k l) less the integral of z (2 z + h_m + h_s)
+/// exp(-c k z).
 template <scalar S>
 S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
   using std::exp;
-  const S path = pencil.path_factor * depth_mm;
-  const S t = c_per_mm * path;
+  const S t = c_per_mm * (pencil.path_factor * depth_mm);
   const ExponentialMoments<S> m = exponential_moments(t);
-  // The third moment by its own series of positive terms, see exponential_moments.
-  S third{};
-  if (value(t) < 4) {
-    S term = S(1) / S(4);
-    third = term;
-    for (int j = 5; j < 200 && value(term) > epsilon<S>() * value(third) / 4; ++j) {
-      term = term * t / S(j);
-      third = third + term;
-    }
-    third = third * exp(-t);
-  } else {
-    third = (S(3) * m.second - exp(-t)) / t;
-  }
   const S& h_m = pencil.height.meridional_mm;
   const S& h_s = pencil.height.sagittal_mm;
-  const S lower = h_m * h_s * m.zeroth + depth_mm * ((h_m + h_s) * m.first + depth_mm * m.second);
-  const S higher = h_m * h_s * m.first + depth_mm * ((h_m + h_s) * m.second + depth_mm * third);
-  return depth_mm * (lower - t * higher);
+  const S end = (depth_mm + h_m) * (depth_mm + h_s) * exp(-t);
+  return depth_mm * (end - depth_mm * ((h_m + h_s) * m.first + S(2) * depth_mm * m.second));
 }
 
 /// c_red and delta, with the best linear parameters for them: kappa, g_0, g_1, ...
@@ -143,44 +128,35 @@ class AbsorptionProblem {
   using Point = AbsorptionPoint<S, Linear>;
 
   AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& rho_sq_max)
-      : samples_(samples), rho_sq_max_(rho_sq_max), weight_(static_cast<Index>(samples.size())) {
-    for (Index i = 0; i < size(); ++i) {
-      weight_(i) = sample(i).weight;
-    }
+      : samples_(samples), rho_sq_max_(rho_sq_max), weight_(Vector::Ones(size())) {
+    weight_ = weighted([](const DepthSample<S>& s) { return s.weight; });
   }
 
-  Index size() const { return weight_.size(); }
+  Index size() const { return static_cast<Index>(samples_.size()); }
 
   /// Sum of squares of the weighted greens, the scale of the cost.
-  S green_sq() const {
-    S sum = S(0);
-    for (Index i = 0; i < size(); ++i) {
-      sum += square(weight_(i) * sample(i).colour.green);
-    }
-    return sum;
-  }
+  S green_sq() const { return membrane(S(0)).squaredNorm(); }
 
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
   /// of a colour. It is constant to a few per cent over the depths of a pad.
   void weigh(const Point& p) {
     using std::exp;
     using std::sqrt;
-    for (Index i = 0; i < size(); ++i) {
-      weight_(i) = sample(i).weight / sqrt(exp(S(2) * p.delta * path(i)) + square(S(p.linear(0))));
-    }
+    weight_.setOnes();
+    weight_ = weighted([&](const DepthSample<S>& s) {
+      return S(s.weight / sqrt(exp(S(2) * p.delta * path(s)) + square(S(p.linear(0)))));
+    });
   }
 
   /// Eliminates the linear parameters.
   Point project(const S& c_red, const S& delta, bool with_jacobian) const {
-    Matrix rest(size(), with_jacobian ? 3 : 1);
-    for (Index i = 0; i < size(); ++i) {
-      rest(i, 0) = weight_(i) * membrane(i, delta);
-    }
     const HouseholderQr<S> qr(linear_columns(c_red));
+    Matrix rest(size(), with_jacobian ? 3 : 1);
+    rest.col(0) = membrane(delta);
     Point p{c_red, delta, qr.solve(-rest.col(0))};
-    for (Index i = 0; i < (with_jacobian ? size() : 0); ++i) {
-      rest(i, 1) = c_red * by_c_red(i, p);
-      rest(i, 2) = by_delta(i, delta);
+    if (with_jacobian) {
+      rest.rightCols(2) = slopes(p);
+      rest.col(1) *= c_red;
     }
     qr.apply_transposed(rest);
     p.residual = rest.col(0).tail(size() - Linear);
@@ -193,11 +169,8 @@ class AbsorptionProblem {
   /// without absorption and with W = 1; both variances are per degree of freedom.
   S explained_by_depth(const Point& p) const {
     const Index left = size() - Linear - 2;
-    Matrix green(size(), 1);
-    for (Index i = 0; i < size(); ++i) {
-      green(i, 0) = weight_(i) * sample(i).colour.green;
-    }
-    HouseholderQr<S>(columns([](Index) { return S(1); })).apply_transposed(green);
+    Matrix green = membrane(S(0));
+    HouseholderQr<S>(columns([](const DepthSample<S>&) { return S(1); })).apply_transposed(green);
     const S without = green.bottomRows(size() - Linear).squaredNorm();
     return left > 0 ? S(1) - p.cost / S(static_cast<double>(left)) /
                                  (without / S(static_cast<double>(left + 2)))
@@ -207,46 +180,60 @@ class AbsorptionProblem {
   /// d(weighted F)/d(c_red, delta, kappa, g_0, ...): size x (2 + Linear).
   Matrix full_jacobian(const Point& p) const {
     Matrix j(size(), 2 + Linear);
-    for (Index i = 0; i < size(); ++i) {
-      j(i, 0) = by_c_red(i, p);
-      j(i, 1) = by_delta(i, p.delta);
-    }
+    j.leftCols(2) = slopes(p);
     j.rightCols(Linear) = linear_columns(p.c_red);
     return j;
   }
 
  private:
-  const DepthSample<S>& sample(Index i) const { return samples_[static_cast<std::size_t>(i)]; }
-  S path(Index i) const { return sample(i).pencil.path_factor * sample(i).depth_mm; }
-  S v(Index i) const { return sample(i).rho_sq_mm2 / rho_sq_max_; }
+  static S path(const DepthSample<S>& s) { return s.pencil.path_factor * s.depth_mm; }
 
-  S membrane(Index i, const S& delta) const {
-    using std::exp;
-    return sample(i).colour.green * exp(delta * path(i));
-  }
-  S by_delta(Index i, const S& delta) const { return weight_(i) * path(i) * membrane(i, delta); }
-  S by_c_red(Index i, const Point& p) const {
-    const DepthSample<S>& s = sample(i);
-    S g = p.linear(Linear - 1);
-    for (int k = Linear - 2; k >= 1; --k) {
-      g = g * v(i) + p.linear(k);
+  template <class Of>
+  Vector weighted(const Of& of) const {
+    Vector all(size());
+    for (Index i = 0; i < size(); ++i) {
+      all(i) = weight_(i) * of(samples_[static_cast<std::size_t>(i)]);
     }
-    return weight_(i) * g * scattered_light_per_absorption(s.depth_mm, p.c_red, s.pencil);
+    return all;
+  }
+
+  /// Green times e^{delta k l}.
+  Vector membrane(const S& delta) const {
+    using std::exp;
+    return weighted(
+        [&](const DepthSample<S>& s) { return S(s.colour.green * exp(delta * path(s))); });
+  }
+
+  /// d(weighted F)/d(c_red, delta).
+  Matrix slopes(const Point& p) const {
+    using std::exp;
+    Matrix by(size(), 2);
+    by.col(0) = weighted([&](const DepthSample<S>& s) {
+      S g = p.linear(Linear - 1);
+      for (int k = Linear - 2; k >= 1; --k) {
+        g = g * s.rho_sq_mm2 / rho_sq_max_ + p.linear(k);
+      }
+      return S(g * scattered_light_per_absorption(s.depth_mm, p.c_red, s.pencil));
+    });
+    by.col(1) = weighted([&](const DepthSample<S>& s) {
+      return S(s.colour.green * path(s) * exp(p.delta * path(s)));
+    });
+    return by;
   }
 
   Matrix linear_columns(const S& c_red) const {
     return columns(
-        [&](Index i) { return scattered_light(sample(i).depth_mm, c_red, sample(i).pencil); });
+        [&](const DepthSample<S>& s) { return scattered_light(s.depth_mm, c_red, s.pencil); });
   }
-  /// Columns of kappa, g_0, g_1, ..., where light(i) is the W of sample i.
+  /// Columns of kappa, g_0, g_1, ..., where light(sample) is W.
   template <class Light>
   Matrix columns(const Light& light) const {
     Matrix a(size(), Linear);
+    a.col(0) = weighted([](const DepthSample<S>& s) { return S(-s.colour.red); });
+    a.col(1) = weighted(light);
     for (Index i = 0; i < size(); ++i) {
-      a(i, 0) = -weight_(i) * sample(i).colour.red;
-      a(i, 1) = weight_(i) * light(i);
       for (int k = 2; k < Linear; ++k) {
-        a(i, k) = a(i, k - 1) * v(i);
+        a(i, k) = a(i, k - 1) * samples_[static_cast<std::size_t>(i)].rho_sq_mm2 / rho_sq_max_;
       }
     }
     return a;
@@ -263,46 +250,38 @@ bool descend(const AbsorptionProblem<S, Linear>& problem,
              AbsorptionPoint<S, Linear>& p,
              int max_iterations) {
   using std::exp;
-  using std::sqrt;
-  using Vector = typename AbsorptionProblem<S, Linear>::Vector;
-  using Matrix = typename AbsorptionProblem<S, Linear>::Matrix;
-  const auto size_of = [](const S& x) { return x < S(0) ? -x : x; };
   const S tiny = S(4) * epsilon<S>();
-  bool converged = false;
   S damping = S(1) / S(1000);
   p = problem.project(p.c_red, p.delta, true);
-  for (int iteration = 0; iteration < max_iterations && !converged; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    const auto by_c = p.jacobian.col(0), by_delta = p.jacobian.col(1);
+    const S down_c = -by_c.dot(p.residual), down_delta = -by_delta.dot(p.residual);
+    const S cc = by_c.squaredNorm() * (S(1) + damping), cd = by_c.dot(by_delta),
+            dd = by_delta.squaredNorm() * (S(1) + damping), determinant = cc * dd - cd * cd;
     // At the limit delta = 0, delta only moves if that is downhill.
-    const bool at_limit = !(p.delta > S(0)) && p.jacobian.col(1).dot(p.residual) > S(0);
-    const Index n = p.residual.size();
-    Matrix damped = Matrix::Zero(n + 2, 2);
-    damped.topRows(n) = p.jacobian;
-    if (at_limit) {
-      damped.col(1).setZero();
-    }
-    for (Index k = 0; k < 2; ++k) {
-      const S length = damped.col(k).norm();
-      damped(n + k, k) = length > S(0) ? sqrt(damping) * length : S(1);
-    }
-    Vector right = Vector::Zero(n + 2);
-    right.head(n) = -p.residual;
-    const Vector step = HouseholderQr<S>(damped).solve(right);
-    const S c_red = p.c_red * exp((std::max)(S(-1), (std::min)(S(step(0)), S(1))));
-    const S delta = at_limit ? S(0) : (std::max)(p.delta + step(1), S(0));
+    const bool at_limit = !(p.delta > S(0)) && !(down_delta > S(0));
+    const S step = at_limit ? S(down_c / cc) : S((dd * down_c - cd * down_delta) / determinant);
+    const S c_red = p.c_red * exp((std::max)(S(-1), (std::min)(step, S(1))));
+    const S delta =
+        at_limit ? S(0)
+                 : (std::max)(S(p.delta + (cc * down_delta - cd * down_c) / determinant), S(0));
     const auto next = problem.project(c_red, delta, true);
-    const S moved = size_of(step(0)) + size_of(delta - p.delta) / c_red;
+    const bool moved = !(square(step) + square((delta - p.delta) / c_red) <= square(tiny));
     if (next.is_physical() && next.cost < p.cost) {
       const bool gained = next.cost < p.cost * (S(1) - S(100) * epsilon<S>());
       p = next;
       damping = damping / S(10);
-      converged = !(moved > tiny) || !gained;
+      if (!moved || !gained) {
+        return true;
+      }
     } else {
-      damping = damping < tiny ? tiny : damping * S(10);
-      // Even the shortest step leads uphill: converged.
-      converged = !(moved > tiny) || damping > S(1) / tiny;
+      damping = (std::max)(S(damping * S(10)), tiny);
+      if (!moved || damping > S(1) / tiny) {  // even the shortest step leads uphill
+        return true;
+      }
     }
   }
-  return converged;
+  return false;
 }
 
 /// The lowest minimum found from a coarse grid over all fluids that a pad could hold. The descent
@@ -369,39 +348,6 @@ S expects_determined(std::span<const DepthSample<S>> samples, int degree) {
   return *std::max_element(radii.begin(), radii.end());
 }
 
-/// rms of F, grey levels.
-template <scalar S, int Degree>
-S residual_rms(const AbsorptionFit<S, Degree>& fit, std::span<const DepthSample<S>> samples) {
-  using std::sqrt;
-  S sum = S(0);
-  for (const DepthSample<S>& s : samples) {
-    const S g = fit.scattering.at(s.rho_sq_mm2);
-    sum += square(depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm).first);
-  }
-  return sqrt(sum / S(static_cast<double>(samples.size())));
-}
-
-/// Likely mistake in the samples of a converged fit.
-template <scalar S, int Degree>
-const char* mistake_in(const AbsorptionFit<S, Degree>& fit,
-                       std::span<const DepthSample<S>> samples) {
-  S deepest = S(0), g_least = fit.scattering.at(S(0));
-  for (const DepthSample<S>& s : samples) {
-    deepest = (std::max)(deepest, s.depth_mm);
-    g_least = (std::min)(g_least, fit.scattering.at(s.rho_sq_mm2));
-  }
-  if (deepest < S(0.1)) {
-    return cause::depths_not_in_mm;
-  }
-  if (!(g_least > S(0))) {
-    return "g is not positive everywhere: check whether red and green are exchanged";
-  }
-  if (!is_finite(fit.explained)) {
-    return cause::nothing_to_check;
-  }
-  return fit.explained < S(0.9) ? cause::colours_unexplained : nullptr;
-}
-
 }  // namespace detail
 
 /// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
@@ -449,16 +395,30 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.scattering.rho_max_mm = sqrt(rho_sq_max);
   fit.delta_at_limit = !(p.delta > S(0));
 
-  fit.residual_rms = detail::residual_rms(fit, samples);
   const int left = static_cast<int>(samples.size()) - (4 + Degree);
   const S by_residual = left > 0 ? S(sqrt(p.cost / S(left))) : not_a_number<S>();
-  fit.grey_noise = grey_noise > S(0) ? grey_noise : by_residual;
+  const S noise = grey_noise > S(0) ? grey_noise : by_residual;
   // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
   const typename detail::AbsorptionProblem<S, Degree + 2>::Matrix scaled =
-      size.asDiagonal() * qr.inverse_of_r() * fit.grey_noise;
+      size.asDiagonal() * qr.inverse_of_r() * noise;
   fit.covariance = scaled.lazyProduct(scaled.transpose());
   fit.explained = problem.explained_by_depth(p);
-  fit.cause = converged ? detail::mistake_in(fit, samples) : cause::not_converged;
+  S deepest = S(0), squares = S(0);
+  bool is_lit = fit.scattering.at(S(0)) > S(0);
+  for (const DepthSample<S>& s : samples) {
+    deepest = (std::max)(deepest, s.depth_mm);
+    const S g = fit.scattering.at(s.rho_sq_mm2);
+    const auto [f, slope] = depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm);
+    is_lit = is_lit && g > S(0);
+    squares += square(f);
+  }
+  fit.residual_rms = sqrt(squares / S(static_cast<double>(samples.size())));
+  fit.cause = !converged         ? cause::not_converged
+              : deepest < S(0.1) ? cause::depths_not_in_mm
+              : !is_lit ? "g is not positive everywhere: check whether red and green are exchanged"
+              : !is_finite(fit.explained) ? cause::nothing_to_check
+              : fit.explained < S(0.9)    ? cause::colours_unexplained
+                                          : nullptr;
   return fit;
 }
 
@@ -466,22 +426,21 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 /// the covariance propagated through F(l) = 0 at the sample's depth.
 template <scalar S, int Degree>
 S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
-  using std::exp;
   using std::sqrt;
-  const S delta = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
-  const S path = at.pencil.path_factor * at.depth_mm;
-  const S g = fit.scattering.at(at.rho_sq_mm2);
-  const S c_red = fit.fluid.c_red_per_mm;
-  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> by;
-  by(0) = g * detail::scattered_light_per_absorption(at.depth_mm, c_red, at.pencil);
-  by(1) = at.colour.green * path * exp(delta * path);
-  by(2) = -at.colour.red;
-  by(3) = scattered_light(at.depth_mm, c_red, at.pencil);
-  for (int j = 1; j <= Degree; ++j) {
-    by(3 + j) = by(2 + j) * at.rho_sq_mm2 / square(fit.scattering.rho_max_mm);
+  DepthSample<S> sample = at;
+  sample.weight = S(1);
+  detail::AbsorptionPoint<S, Degree + 2> p{
+      fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm, {}};
+  p.linear(0) = fit.fluid.kappa;
+  for (int j = 0; j <= Degree; ++j) {
+    p.linear(j + 1) = fit.scattering.coefficient[static_cast<std::size_t>(j)];
   }
-  const S slope = depth_equation(fit.fluid, at.pencil, g, at.colour, at.depth_mm).second;
+  const detail::AbsorptionProblem<S, Degree + 2> problem(
+      std::span<const DepthSample<S>>(&sample, 1), square(fit.scattering.rho_max_mm));
+  const Eigen::Matrix<S, 4 + Degree, 1> by = problem.full_jacobian(p).row(0);
   const S variance = by.dot(fit.covariance * by);
+  const auto [f, slope] = depth_equation(fit.fluid, at.pencil, fit.scattering.at(at.rho_sq_mm2),
+                                         at.colour, at.depth_mm);
   return sqrt(variance) / slope;
 }
 
