@@ -295,7 +295,7 @@ struct GrossSlip {
 /// An object is dragged until nothing sticks any more, and beyond.
 GrossSlip drag_to_gross_slip(double step_px, double dot_noise_px, double spring_share) {
   const SlippingPattern pattern{.rows = 15, .cols = 15, .contact_pitches = 6};
-  // as in calibrate/slip.hpp: 1 % of sticking dots are taken for slipping
+  // as in calibrate/dot_noise.hpp: 1 % of sticking dots are taken for slipping
   const StickRatio ratio(15, 15,
                          {.reference = 2,
                           .store = 0.5,
