@@ -151,9 +151,8 @@ class WindowMeans {
         Four sum = load<Four>(columns.data() + j);
         sum += __builtin_shufflevector(Four{}, sum, 0, 4, 5, 6);
         sum += __builtin_shufflevector(Four{}, sum, 0, 1, 4, 5);
-        sum += before;
-        store(sums + j, sum);
-        before = __builtin_shufflevector(sum, sum, 3, 3, 3, 3);
+        store(sums + j, Four(sum + before));
+        before += __builtin_shufflevector(sum, sum, 3, 3, 3, 3);
       }
     }
 #endif
