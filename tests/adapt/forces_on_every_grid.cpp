@@ -256,7 +256,7 @@ TEST_CASE("curvature, flat area and surface of a contact from every grid", "[ada
   };
   const auto answer = [&](const auto& depth, const auto& mask) {
     Answer a;
-    REQUIRE(curvature(depth, a.curvature).ok());
+    REQUIRE(curvature(depth, a.curvature).has_value());
     a.flat_area_mm2 = flat_area(mask, depth).area_mm2;
     a.height_mm = fit_surface(plan, depth, mask).point_mm.z;
     return a;

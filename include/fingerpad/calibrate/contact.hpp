@@ -83,7 +83,7 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
   };
   T count = T(0);  // of frames
   for (const auto& depth_mm : free_mm) {
-    const bool fits = map(depth_mm, StridedView<S>(curvature.data(), rows, cols, cols)).ok();
+    const bool fits = map(depth_mm, StridedView<S>(curvature.data(), rows, cols, cols)).has_value();
     expects(fits, owner, "rows of a frame", static_cast<long long>(as_view(depth_mm).rows()),
             "of the same size as the first frame");
     count += T(1);

@@ -141,7 +141,7 @@ class ContactRegion {
     const auto statistic = image_.view(statistic_.data());
     const auto marks = regions_.marks();
     const S threshold = S(test_.threshold_per_mm);
-    result.unknown_px = curvature_(depth, statistic).unknown_px;
+    result.unknown_px = *curvature_(depth, statistic);
     detail::PixelBox seeds = {image_.rows, 0, image_.cols, 0};
     for (Index i = 0; i < image_.rows; ++i) {
       detail::Mark *row = marks.row(i), *end = row + image_.cols;

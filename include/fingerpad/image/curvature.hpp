@@ -27,21 +27,134 @@
 // slope times the distance from the axis. Refraction makes c smaller off the axis, which leaves
 // less than 5e-4 per mm on a plane of slope 1/2 (tests/image/curvature.cpp).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
-#include "fingerpad/image/detail/curvature_rows.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+namespace detail {
+
+/// (K1) over 2 r, for scalars and vectors.
+template <class V>
+[[gnu::always_inline]] inline V section(const V& radius_sq,
+                                        const V& before,
+                                        const V& center,
+                                        const V& after) {
+  const V a = center - before;
+  const V b = after - center;
+  const V rise = after - before;
+  const V ends = (radius_sq + a * a) * (radius_sq + b * b);
+  const V twice = radius_sq + radius_sq;
+  return (a - b) * inverse_sqrt<V>(ends * (twice + twice + rise * rise));
+}
+
+/// One end of a section as an offset from the center pixel; the other end is its negative.
+struct RingOffset {
+  Index row;
+  Index col;
+
+  /// Squared distance in widths of a pixel, which is `aspect` widths high.
+  constexpr double distance_sq(double aspect = 1) const {
+    return static_cast<double>(col * col) + aspect * aspect * static_cast<double>(row * row);
+  }
+  friend constexpr bool operator==(const RingOffset&, const RingOffset&) = default;
+};
+
+/// One end of each section in the directions pi k / directions, sorted from shortest to longest.
+/// For pixels `aspect` times as high as wide; the radius is in widths. The set is its own mirror
+/// image and, for square pixels and an even number of directions, stays the same under exchange of
+/// rows and columns: ties round toward the center, whatever the rounding of sine and cosine.
+inline std::vector<RingOffset> ring_offsets(double radius_px, int directions, double aspect = 1) {
+  const auto nearest = [](double px) { return static_cast<Index>(std::ceil(px - 0.5 - 1e-9)); };
+  std::vector<RingOffset> offsets;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = std::numbers::pi * k / directions, along = std::cos(angle);
+    const Index col = nearest(radius_px * std::abs(along));
+    offsets.push_back({nearest(radius_px * std::sin(angle) / aspect), along < 0 ? -col : col});
+  }
+  std::stable_sort(offsets.begin(), offsets.end(), [&](const RingOffset& a, const RingOffset& b) {
+    return a.distance_sq(aspect) < b.distance_sq(aspect);
+  });
+  return offsets;
+}
+
+/// The sections of a ring. Those of equal length form a group and share its factors.
+template <scalar S>
+class RingSections {
+ public:
+  RingSections() = default;
+  RingSections(const std::vector<RingOffset>& ring,
+               Index stride,
+               const S& pitch_mm,
+               double aspect) {
+    using std::sqrt;
+    double last_sq = 0;
+    for (const RingOffset& end : ring) {
+      steps_.push_back(end.row * stride + end.col);
+      const double distance_sq = end.distance_sq(aspect);
+      if (distance_sq != last_sq) {
+        last_sq = distance_sq;
+        const S radius = sqrt(S(distance_sq)) * pitch_mm;
+        groups_.push_back({S(2) * radius, radius * radius, 0});
+      }
+      ++groups_.back().sections;
+    }
+  }
+
+  /// Mean curvature of the complete sections through the pixels from cells[0] on, in 1/mm; NaN
+  /// where fewer than `least` are complete. `Clamped`: negative curvatures count as 0. `shrink` is
+  /// 1 / (1 + c l), see curvature.hpp.
+  template <bool Clamped, class V>
+  [[gnu::always_inline]] V mean(const S* cells, const V& shrink, int least) const {
+    const V center = load_cells<V, S>(cells), shrink_sq = shrink * shrink;
+    const V none = every_lane<V>(S(0)), one = every_lane<V>(S(1));
+    V total = none, complete = none;
+    const Index* step = steps_.data();
+    for (const Group& group : groups_) {
+      const V radius_sq = shrink_sq * group.radius_sq;
+      V sum = none;
+      for (int k = 0; k < group.sections; ++k, ++step) {
+        const V term = section<V>(radius_sq, load_cells<V, S>(cells - *step), center,
+                                  load_cells<V, S>(cells + *step));
+        complete = complete + V(known<V>(term) ? one : none);
+        if constexpr (Clamped) {
+          sum = sum + V(none < term ? term : none);
+        } else {
+          sum = sum + V(known<V>(term) ? term : none);
+        }
+      }
+      total = total + sum * group.twice_radius;
+    }
+    const V mean = total * (shrink_sq * shrink) / complete;
+    return complete < every_lane<V>(S(least)) ? every_lane<V>(not_a_number<S>()) : mean;
+  }
+
+ private:
+  struct Group {
+    S twice_radius;
+    S radius_sq;
+    int sections;
+  };
+
+  std::vector<Index> steps_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace detail
 
 /// Curvature in 1/mm of the section through depths at -radius, 0 and +radius; radius_mm > 0.
 template <scalar S>
@@ -71,13 +184,6 @@ inline std::string check(const CurvatureRing& ring) {
        {"min_direction_share", ring.min_direction_share, {.min = 0, .max = 1, .above_min = true}},
        {"directions", ring.directions, within(1, 360)}});
 }
-
-struct [[nodiscard]] CurvatureResult {
-  FrameStatus status = FrameStatus::refused;
-  Index unknown_px = 0;  ///< pixels that got NaN
-
-  bool ok() const { return status == FrameStatus::ok; }
-};
 
 /// Mean curvature of depth maps of one size, computed in the scalar S: by vectors in float and
 /// double, pixel by pixel in any other.
@@ -122,11 +228,12 @@ class CurvatureMap {
   Index cols() const { return cols_; }
 
   /// Writes the mean of the curvatures in 1/mm, negative ones counted as 0, to `out`, which may be
-  /// the depth map itself. By the slides, this mean is below p / (2 sigma) (pressure p, membrane
-  /// tension sigma) only in contact; it is 0 where the object is convex or flat. Takes a depth map
-  /// in mm. Refuses other sizes, and then writes nothing.
+  /// the depth map itself, and returns the number of pixels that got NaN. By the slides, this mean
+  /// is below p / (2 sigma) (pressure p, membrane tension sigma) only in contact; it is 0 where the
+  /// object is convex or flat. Takes a depth map in mm. No number, and nothing written, for other
+  /// sizes.
   template <grid Depth, class Out>
-  CurvatureResult operator()(const Depth& depth_mm, Out&& out) {
+  [[nodiscard]] std::optional<Index> operator()(const Depth& depth_mm, Out&& out) {
     static_assert(detail::takes_numbers<Out, S>,
                   "this grid is written to: its cells must be assignable and able to hold NaN");
     const auto from = as_view(depth_mm);
@@ -137,7 +244,7 @@ class CurvatureMap {
     for (Index i = 0; i < rows_; ++i) {
       load_row(from, i);
     }
-    return {FrameStatus::ok, write_means<true>(0, rows_, 0, cols_, to)};
+    return write_means<true>(0, rows_, 0, cols_, to);
   }
 
   /// Writes the plain mean of the last depth map, which locates the edge of contact, to rows
@@ -235,17 +342,24 @@ class CurvatureMap {
   /// them are known. Beyond the image none is.
   template <bool Clamped>
   [[gnu::noinline]] Index compute_segment(const S* cells, Index count) {
-    detail::lane_count<V> known{};
+    const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
+    V known = none;
     for (Index j = 0; j < count; j += n) {
       const V zeta = detail::load_cells<V, S>(cells + j);
       V mean = detail::every_lane<V>(not_a_number<S>());
       if (detail::any_lane(detail::known<V>(zeta))) {
         mean = sections_.template mean<Clamped, V>(cells + j, V(1 - growth_ * zeta), least_);
       }
-      known = detail::plus_known<V>(known, mean);
+      known = known + V(detail::known<V>(mean) ? one : none);
       detail::store_cells<S>(segment_.data() + j, mean);
     }
-    return detail::sum_of<V>(known);
+    std::array<S, static_cast<std::size_t>(n)> of_lane;
+    detail::store_cells<S>(of_lane.data(), known);
+    Index sum = 0;
+    for (const S& count_of_lane : of_lane) {
+      sum += static_cast<Index>(value(count_of_lane));
+    }
+    return sum;
   }
 
   template <class View>
