@@ -78,8 +78,6 @@ class Regions {
     Index pixels() const { return end - begin; }
   };
   Index pixel(Index k) const { return queue_[static_cast<std::size_t>(k)]; }
-  const Index* begin(const Region& region) const { return queue_.data() + region.begin; }
-  const Index* end(const Region& region) const { return queue_.data() + region.end; }
 
   /// Finds the connected regions of seeds and marks them as contact. Drops those for which
   /// keep(region) is false, calls visit(region) for the others and returns how many of these are

@@ -181,18 +181,19 @@ class ColourRows {
   template <class Cell>
   using element_t =
       std::conditional_t<is_short<Cell> && std::same_as<S, float>, std::uint16_t, std::int64_t>;
-  template <class Element, S for_16_bits, S for_64_bits>
-  static constexpr S either = sizeof(Element) == 2 ? for_16_bits : for_64_bits;
+  template <class Element, std::int64_t for_16_bits, std::int64_t for_64_bits>
+  static constexpr S either = S(static_cast<double>(sizeof(Element) == 2 ? for_16_bits
+                                                                         : for_64_bits));
   template <class E>
-  static constexpr S residual_steps = either<E, S(128), S(0x1p38)>;  ///< in a grey level
+  static constexpr S residual_steps = either<E, 128, std::int64_t(1) << 38>;  ///< in a grey level
   template <class E>
-  static constexpr S green_steps = either<E, S(256), S(0x1p38)>;
+  static constexpr S green_steps = either<E, 256, std::int64_t(1) << 38>;
   template <class E>
-  static constexpr S middle = either<E, S(32768), S(0)>;
+  static constexpr S middle = either<E, 32768, 0>;
   template <class E>
-  static constexpr S low = either<E, S(0), S(-0x1p47)>;
+  static constexpr S low = either<E, 0, -(std::int64_t(1) << 47)>;
   template <class E>
-  static constexpr S high = either<E, S(65535), S(0x1p47)>;
+  static constexpr S high = either<E, 65535, std::int64_t(1) << 47>;
 
   template <class Element>
   auto& means() {
