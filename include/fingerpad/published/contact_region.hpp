@@ -110,14 +110,12 @@ bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOpt
 template <scalar S = double, grid Depth, class Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
   static_assert(writable_grid<Mask, bool>, "this grid is written to: its cells must be assignable");
-  const char* const owner = "SlidesContactOptions";
-  expects(is_finite(o.threshold_per_mm), owner, "threshold_per_mm", o.threshold_per_mm, "finite");
-  expects(o.directions >= 1 && o.directions <= 360, owner, "directions",
-          static_cast<long long>(o.directions), "in [1, 360]");
-  expects(o.radius_px >= 1 && o.radius_px <= 1000, owner, "radius_px", o.radius_px, "in [1, 1000]");
-  expects(o.pitch_mm > 0 && o.pitch_mm <= 10, owner, "pitch_mm", o.pitch_mm, "in (0, 10]");
-  expects(o.step_px >= 1 && o.step_px <= 1000, owner, "step_px", static_cast<long long>(o.step_px),
-          "in [1, 1000]");
+  require("SlidesContactOptions",
+          {{"threshold_per_mm", o.threshold_per_mm, finite_number},
+           {"directions", o.directions, within(1, 360)},
+           {"radius_px", o.radius_px, within(1, 1000)},
+           {"pitch_mm", o.pitch_mm, {.min = 0, .max = 10, .above_min = true}},
+           {"step_px", o.step_px, within(1, 1000)}});
   const auto to = as_view(std::forward<Mask>(mask));
   if (!same_size(depth_mm, to)) {
     return not_a_number<double>();
