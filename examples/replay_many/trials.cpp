@@ -12,7 +12,6 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
@@ -337,36 +336,6 @@ Trial power_law() {
   return trial({"coefficient_mm", "exponent"}, {2.2, 0.33}, 0.1, measure, draw_samples, fit);
 }
 
-/// Forty presses of a dotted gel, 0.05 N of noise and 0.02 mm^2 of the divergence.
-Trial divergence() {
-  using Press = std::pair<fingerpad::DivergenceResult<double>, double>;
-  const auto measure = [](Chance& chance) {
-    std::vector<Press> presses;
-    for (int k = 0; k < 40; ++k) {
-      Press press;
-      press.second = 0.25 * (k + 1);
-      press.first.status = fingerpad::FrameStatus::ok;
-      press.first.area_mm2 = 0.5 * press.second + 0.02 * chance.normal();
-      press.first.variance_mm4 = 0.02 * 0.02;
-      press.second += force_noise_n * chance.normal();
-      presses.push_back(press);
-    }
-    return presses;
-  };
-  const auto fit = [](const std::vector<Press>& presses) {
-    std::vector<fingerpad::DivergenceResult<double>> divergences;
-    std::vector<double> forces;
-    for (const auto& [divergence, force] : presses) {
-      divergences.push_back(divergence);
-      forces.push_back(force);
-    }
-    const auto found = fingerpad::fit_divergence(divergences, forces);
-    return Estimate{{found.curve.coefficients[1]},
-                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1})};
-  };
-  return trial({"n_per_mm2"}, {2}, 0.1, measure, draw_samples, fit);
-}
-
 Trial tangential_force() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm));
@@ -469,7 +438,6 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"intensity", intensity},
       {"preslip", preslip},
       {"power_law", power_law},
-      {"divergence", divergence},
       {"rim", rim},
       {"rubber", rubber},
       {"normal_force", normal_force},

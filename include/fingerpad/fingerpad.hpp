@@ -27,7 +27,6 @@
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/several_arrays.hpp"
 #include "fingerpad/foam/taxel_features.hpp"
-#include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/rim_pull.hpp"
@@ -54,7 +53,6 @@
 
 #if __has_include(<Eigen/Core>)
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"

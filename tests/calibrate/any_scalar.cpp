@@ -11,7 +11,6 @@
 
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
@@ -148,24 +147,6 @@ struct FreePadByPitch {
   }
 };
 
-/// Normal force over the divergence of dots, by the unit of the force.
-struct DivergenceByForce {
-  template <class S>
-  Results<S> operator()(const S& p) const {
-    std::vector<DivergenceResult<S>> divergences;
-    std::vector<S> forces;
-    for (int k = 1; k < 20; ++k) {
-      DivergenceResult<S> d;
-      d.area_mm2 = S(0.3 * k);
-      d.variance_mm4 = S(1e-4);
-      divergences.push_back(d);
-      forces.push_back(S(p * S(0.8 * k + 0.05 * (k % 3))));
-    }
-    const auto fit = fit_divergence<1, S>(divergences, forces);
-    return {fit.curve.coefficients[0], fit.errors.residual_sd_n};
-  }
-};
-
 /// Thresholds that separate marked onsets. They come from a list, so none has a derivative.
 struct PreslipThresholds {
   template <class S>
@@ -229,6 +210,5 @@ TEST_CASE("calibrations: in float, and with derivatives") {
   check("noise of dots", DotNoiseByScale(), 1e-3);
   check("noise of taxels", TaxelsByGain(), 1e-3);
   check("free pad", FreePadByPitch(), 2e-2);
-  check("divergence of dots", DivergenceByForce(), 1e-3);
   check("pre-slip", PreslipThresholds(), 1e-6, false);
 }

@@ -15,7 +15,6 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_divergence.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -121,36 +120,6 @@ Change any_force() {
     s.tangential_force_n = {random.normal(), random.normal()};
     s.moment_n_mm = random.normal();
   };
-}
-
-/// Forty presses in any order, as a gauge and the dots beside it measure them.
-struct Presses {
-  std::vector<DivergenceResult<double>> dots;
-  std::vector<double> forces_n;
-};
-
-std::function<std::string()> divergence(const std::function<void(Presses&)>& change) {
-  return [=] {
-    Presses presses;
-    Random random(3);
-    for (int k = 0; k < 40; ++k) {
-      const double area_mm2 = 0.5 + 4 * random.uniform();
-      presses.dots.push_back({FrameStatus::ok, area_mm2, 1e-4, 60, 0});
-      presses.forces_n.push_back(2 * area_mm2 + 0.03 * random.normal());
-    }
-    change(presses);
-    return said([&] { return fit_divergence<1>(presses.dots, presses.forces_n); });
-  };
-}
-void times(std::vector<double>& numbers, double factor) {
-  for (double& x : numbers) {
-    x *= factor;
-  }
-}
-void areas_times(Presses& presses, double factor) {
-  for (auto& d : presses.dots) {
-    d.area_mm2 *= factor;
-  }
 }
 
 // ---- depth
@@ -286,50 +255,6 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
        "contradict each other"},
       {"stuck gauge", normal([](auto& s) { s.normal_force_n = 4; }), "not that of these contacts"},
       {"nothing measured", normal([](auto& s) { s.normal_force_n = test::nan; }),
-       "usable samples = 0"},
-  });
-}
-
-TEST_CASE("mistakes: force over the divergence of the dots", "[mistakes]") {
-  check({
-      {"none", divergence([](Presses&) {}), "ok"},
-      {"random forces", divergence([random = Random(7)](Presses& p) mutable {
-         for (double& n : p.forces_n) {
-           n = 10 * random.uniform();
-         }
-       }),
-       "contradict each other"},
-      {"forces of the press before", divergence([](Presses& p) {
-         std::rotate(p.forces_n.begin(), p.forces_n.begin() + 1, p.forces_n.end());
-       }),
-       "contradict each other"},
-      {"a force left out", divergence([](Presses& p) { p.forces_n.pop_back(); }),
-       "as many as divergences"},
-      {"dots in m", divergence([](Presses& p) { areas_times(p, 1e-6); }), "areas in mm^2"},
-      {"dots in um", divergence([](Presses& p) { areas_times(p, 1e6); }), "areas in mm^2"},
-      {"dots in px",  // a valid unit if the frames use it too
-       divergence([](Presses& p) { areas_times(p, 150); }), "ok"},
-      {"forces in mN", divergence([](Presses& p) { times(p.forces_n, 1e3); }), "give forces in N"},
-      {"forces in kN", divergence([](Presses& p) { times(p.forces_n, 1e-3); }), "give forces in N"},
-      {"force negative, as a wrench has it", divergence([](Presses& p) { times(p.forces_n, -1); }),
-       "the force falls while the contact grows"},
-      {"gauge not tared", divergence([](Presses& p) {
-         for (double& n : p.forces_n) {
-           n += 6;
-         }
-       }),
-       "tare the gauge"},
-      {"stuck gauge", divergence([](Presses& p) { p.forces_n.assign(40, 4.0); }),
-       "the samples are constant"},
-      {"no press seen by the dots", divergence([](Presses& p) { areas_times(p, test::nan); }),
-       "usable samples = 0"},
-      {"half of the presses not seen", divergence([](Presses& p) {
-         for (std::size_t k = 0; k < p.dots.size(); k += 2) {
-           p.dots[k].area_mm2 = test::nan;
-         }
-       }),
-       "ok"},
-      {"free pad and now exchanged", divergence([](Presses& p) { areas_times(p, -1); }),
        "usable samples = 0"},
   });
 }

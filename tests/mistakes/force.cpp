@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/force/normal_force.hpp"
 #include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/traction.hpp"
@@ -655,128 +654,6 @@ TEST_CASE(
   CHECK(r.mu_t_n_per_mm / 0.5 == Approx(1.53).margin(0.01));
 }
 
-namespace {
-
-/// Dots 2 mm apart on a gel that is pressed in the middle: they move apart under the load.
-struct PartedDots {
-  static constexpr Index across = 15;
-  using Dots = Image<Point2<double>>;
-  Dots free{across, across}, now{across, across};
-  Image<std::uint8_t> contact{across, across, 0};
-
-  PartedDots() {
-    for (Index i = 0; i < across; ++i) {
-      for (Index j = 0; j < across; ++j) {
-        const double x = 2 * static_cast<double>(j - 7), y = 2 * static_cast<double>(i - 7);
-        const double parted = 0.02 * std::exp(-(x * x + y * y) / 40);
-        free(i, j) = {x, y};
-        now(i, j) = {x + parted * x, y + parted * y};
-        contact(i, j) = x * x + y * y < 40 ? 1 : 0;
-      }
-    }
-  }
-
-  /// Dot (i, j) of this frame becomes the one at from(i, j).
-  template <class From>
-  void rename(const From& from) {
-    const Dots as_it_was = now;
-    for (Index i = 0; i < across; ++i) {
-      for (Index j = 0; j < across; ++j) {
-        const DotIndex d = from(i, j);
-        now(i, j) = as_it_was((d.row + across) % across, (d.col + across) % across);
-      }
-    }
-  }
-  static void scale(Dots& dots, double factor) {
-    for (Point2<double>& p : dots.cells) {
-      p = factor * p;
-    }
-  }
-};
-
-struct DivergenceMistake {
-  const char* mistake;
-  void (*make)(PartedDots&);
-  const char* said;
-};
-
-const DivergenceMistake divergence_mistakes[] = {
-    {"none", [](PartedDots&) {}, "right"},
-    {"dots in m", [](PartedDots& d) { PartedDots::scale(d.now, 1e-3); }, "not of this pad"},
-    {"dots in um", [](PartedDots& d) { PartedDots::scale(d.now, 1e3); }, "not of this pad"},
-    {"dots in px", [](PartedDots& d) { PartedDots::scale(d.now, 12); }, "not of this pad"},
-    {"free pad and now in px",
-     [](PartedDots& d) { PartedDots::scale(d.now, 12), PartedDots::scale(d.free, 12); },
-     "another area"},
-    {"rows and columns exchanged",
-     [](PartedDots& d) { d.rename([](Index i, Index j) {
-                           return DotIndex{j, i};
-                         }); },
-     "not of this pad"},
-    {"columns from the other end",
-     [](PartedDots& d) {
-       d.rename([](Index i, Index j) { return DotIndex{i, PartedDots::across - 1 - j}; });
-     },
-     "not of this pad"},
-    {"shifted by one",
-     [](PartedDots& d) { d.rename([](Index i, Index j) {
-                           return DotIndex{i, j + 1};
-                         }); }, "right"},
-    {"two halves exchanged",
-     [](PartedDots& d) {
-       d.rename([](Index i, Index j) { return DotIndex{i, j + PartedDots::across / 2}; });
-     },
-     "not of this pad"},
-    {"neighbours exchanged",
-     [](PartedDots& d) {
-       d.rename([](Index i, Index j) {
-         return DotIndex{i, j == 14 ? j : j % 2 == 0 ? j + 1 : j - 1};
-       });
-     },
-     "no measure"},
-    {"frozen at the free pad", [](PartedDots& d) { d.now = d.free; }, "another area"},
-    {"free pad and now exchanged", [](PartedDots& d) { std::swap(d.now, d.free); }, "another area"},
-    {"half of the dots missing",
-     [](PartedDots& d) {
-       for (Index k = 0; k < PartedDots::across * PartedDots::across / 2; ++k) {
-         d.now.cells[static_cast<std::size_t>(k)].x = test::nan;
-       }
-     },
-     "no measure"},
-    {"lost as (0, 0)",
-     [](PartedDots& d) {
-       for (Index k = 0; k < PartedDots::across * PartedDots::across; k += 9) {
-         d.now.cells[static_cast<std::size_t>(k)] = {0, 0};
-       }
-     },
-     "right"},
-    {"another frame's size", [](PartedDots& d) { d.now = PartedDots::Dots(15, 14); }, "refused"},
-};
-
-std::string said_by_divergence(const PartedDots& d) {
-  const DotDivergence<> divergence(d.free);
-  auto workspace = divergence.workspace();
-  const auto r = divergence(d.now, d.contact, workspace);
-  const PartedDots right;
-  const DotDivergence<> well(right.free);
-  const double area_mm2 = well(right.now, right.contact, workspace).area_mm2;
-  return r.status != FrameStatus::ok                  ? name_of(r.status)
-         : !r.ok()                                    ? "no measure"
-         : std::abs(r.area_mm2 / area_mm2 - 1) < 0.15 ? "right"
-                                                      : "another area";
-}
-
-}  // namespace
-
-TEST_CASE("mistakes with the divergence of the dots", "[mistakes]") {
-  for (const DivergenceMistake& m : divergence_mistakes) {
-    INFO(m.mistake);
-    PartedDots dots;
-    m.make(dots);
-    CHECK(said_by_divergence(dots) == m.said);
-  }
-}
-
 TEST_CASE("one convention of signs: a press", "[mistakes]") {
   // a vector is the force of the object on the pad, z toward the object; a normal force > 0 presses
   const auto wrench = seen(Frame());
@@ -806,8 +683,6 @@ TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes
     const LazyView dots(rows, cols, [](Index i, Index j) {
       return Vector{1.5 * static_cast<double>(j), 1.5 * static_cast<double>(i), 9};
     });
-    const std::string divergence = test::refusal([&] { const DotDivergence<> r(dots); });
-    CHECK(test::begins_with(divergence, "DotDivergence: "));
     return test::refusal([&] { const TractionField<> r(dots); });
   };
   constexpr Index enormous = std::numeric_limits<Index>::max();

@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "fingerpad/force/dot_divergence.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
@@ -64,22 +63,4 @@ TEMPLATE_TEST_CASE("normal force: a frame allocates nothing",
   CHECK(after == before);
   CHECK(answers > 150);
   CHECK(sources == 200 + answers);
-}
-
-TEST_CASE("dot divergence: a frame allocates nothing", "[dot_divergence]") {
-  test::Image<Point2<double>> dots(9, 9);
-  test::Image<std::uint8_t> contact(9, 9, 1);
-  for (Index i = 0; i < 9; ++i) {
-    for (Index j = 0; j < 9; ++j) {
-      dots(i, j) = {static_cast<double>(j), static_cast<double>(i)};
-    }
-  }
-  const DotDivergence<> divergence(dots);
-  auto workspace = divergence.workspace();
-  dots(4, 4).x = std::numeric_limits<double>::quiet_NaN();
-  const long before = test::allocations();
-  const auto seen = divergence(dots, contact, workspace);
-  const long after = test::allocations();
-  CHECK(after == before);
-  CHECK(seen.filled == 1);
 }
