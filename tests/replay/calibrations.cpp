@@ -125,7 +125,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
   CHECK(sensor.stick.slip == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
-  CHECK(sensor.rim->law.mooney_share == 0.1 / 3);
+  CHECK(sensor.rim->mooney_share == 0.1 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
   CHECK(sensor.smoothing_px == 15);
   REQUIRE(sensor.force);
@@ -188,7 +188,7 @@ TEST_CASE("The rubber that calibrate finds is the one that a recording is read w
   Outcome whole = camera_and_more();
   whole.sections["rim"] = found.sections["rim"];
   save(whole, file);
-  CHECK(replay::read_sensor(file).rim->law.mooney_share == share);
+  CHECK(replay::read_sensor(file).rim->mooney_share == share);
   fs::remove(folder / "apex.csv");
   CHECK_THROWS_AS(calibrate::rim(folder, noise), replay::Failure);
   fs::remove_all(folder);
