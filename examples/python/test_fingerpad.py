@@ -37,7 +37,7 @@ def table(file):
         rows = list(csv.DictReader(lines))
     number = lambda cell: float(cell) if cell else np.nan
     return {name: np.array([number(row[name]) for row in rows])
-            for name in rows[0] if name not in ("load", "slip_evidence")}
+            for name in rows[0] if name not in ("load", "slip_evidence", "motion_status")}
 
 
 def run(program, *arguments):

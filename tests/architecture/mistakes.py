@@ -102,7 +102,7 @@ PLANTED = {
     "a method without lines": (PAGE, "| rim | refused |", "| brim | refused |"),
     "a row that is not there": (CELLS, "pressure in kPa", "pressure in tons"),
     "a row that was renamed": ("tests/mistakes/force.cpp", '{"absolute pressure"', '{"pressure of all"'),
-    "a status that no row says": (PAGE, "| `unstretched` |", "| `no_shape` |"),
+    "a status that no row says": (PAGE, "| `bad_side_dots` |", "| `no_shape` |"),
     "a reason that is not there": (PAGE, "not noticeable (15)", "not noticeable (99)"),
 }
 

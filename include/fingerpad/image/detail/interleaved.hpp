@@ -37,7 +37,6 @@ using Bytes16 = lanes<std::uint8_t, 16>;
 [[gnu::always_inline]] inline void mix(std::array<Bytes16, 4>& v) {
   v = {mix_low(v[0], v[2]), mix_high(v[0], v[2]), mix_low(v[1], v[3]), mix_high(v[1], v[3])};
 }
-#endif
 
 /// red[i] = from[channels i + red_offset], and likewise green, for as many i < n as whole vectors
 /// hold; returns how many. Interleaving the halves of 16 pixels four times brings byte C i + c to
@@ -50,7 +49,6 @@ Index load_interleaved(const std::uint8_t* from,
                        std::uint8_t* red,
                        std::uint8_t* green) {
   Index i = 0;
-#if defined(FINGERPAD_HAS_VECTORS)
   for (; i + 16 <= n; i += 16) {
     std::array<Bytes16, channels> planes;
     for (std::size_t c = 0; c < channels; ++c) {
@@ -63,9 +61,14 @@ Index load_interleaved(const std::uint8_t* from,
     store(red + i, planes[std::size_t(red_offset)]);
     store(green + i, planes[std::size_t(green_offset)]);
   }
-#endif
   return i;
 }
+#else
+template <std::size_t>
+Index load_interleaved(const std::uint8_t*, Index, Index, Index, std::uint8_t*, std::uint8_t*) {
+  return 0;
+}
+#endif
 
 }  // namespace detail
 }  // namespace v0
