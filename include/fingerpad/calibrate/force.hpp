@@ -192,10 +192,10 @@ NormalForceFit<PolynomialForce<Degree, S>> fit_normal_force(std::span<const Forc
   const char* const owner = "fit_normal_force";
   const bool moved = curve.displaced || curve.rotated;
   const auto usable = detail::usable_samples(samples, [&](const ForceSample<S>& s) {
-    return is_plausible(s.normal_force_n) && (!moved || detail::has_finite_motion(s));
+    return is_finite(s.normal_force_n) && (!moved || detail::has_finite_motion(s));
   });
   expects(!usable.samples.empty(), owner, "usable samples", 0LL,
-          "> 0: with a measure > 0 and a normal force below a million");
+          "> 0: with a measure > 0 and a finite normal force");
   typename Fit::Vector forces(static_cast<Index>(usable.samples.size()));
   std::vector<detail::PressedContact<S>> contacts;
   S from = usable.samples.front().measure, to = from;
@@ -246,7 +246,7 @@ NormalForceFit<PowerLawForce<S>> fit_power_law(std::span<const ForceSample<S>> s
   using std::sqrt;
   using Fit = detail::ModelFit<S>;
   const auto usable = detail::usable_samples(samples, [](const ForceSample<S>& s) {
-    return is_plausible(s.normal_force_n) && value(s.normal_force_n) > 0;
+    return is_finite(s.normal_force_n) && value(s.normal_force_n) > 0;
   });
   const Index n = static_cast<Index>(usable.samples.size());
   detail::PowerLawModel<S> model(n);
@@ -311,7 +311,7 @@ ShearFit<Degree, S> fit_tangential_force(
   const char* const owner = "fit_tangential_force";
   detail::expects_reference<S>(reference, owner);
   const auto usable = detail::usable_samples(samples, [](const ForceSample<S>& s) {
-    return is_plausible(s.tangential_force_n) && detail::has_finite_motion(s);
+    return is_finite(s.tangential_force_n) && detail::has_finite_motion(s);
   });
   std::vector<detail::ShearEquation<S>> equations;
   for (std::size_t i = 0; i < usable.samples.size(); ++i) {
@@ -337,7 +337,7 @@ ShearFit<Degree, S> fit_moment(std::span<const ForceSample<S>> samples,
   const char* const owner = "fit_moment";
   detail::expects_reference<S>(reference, owner);
   const auto usable = detail::usable_samples(samples, [](const ForceSample<S>& s) {
-    return is_plausible(s.moment_n_mm) && is_finite(s.rotation_rad);
+    return is_finite(s.moment_n_mm) && is_finite(s.rotation_rad);
   });
   std::vector<detail::ShearEquation<S>> equations;
   for (std::size_t i = 0; i < usable.samples.size(); ++i) {
@@ -361,7 +361,7 @@ LinearShearFit<S> fit_linear_shear(std::span<const ForceSample<S>> samples,
   using Fit = detail::ModelFit<S>;
   expects_valid(normalisation);
   const auto usable = detail::usable_samples(samples, [](const ForceSample<S>& s) {
-    return is_plausible(s.tangential_force_n) && is_finite(s.displacement_mm);
+    return is_finite(s.tangential_force_n) && is_finite(s.displacement_mm);
   });
   const Index n = static_cast<Index>(usable.samples.size());
   detail::LinearModel<S> model(n, 3);

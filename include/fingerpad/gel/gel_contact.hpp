@@ -196,7 +196,7 @@ class GelContact {
     free_weight_ = cv::Mat_<float>(inner_.size(), 1.0F);
     for (const cv::Mat& frame : frames) {
       read(frame);
-      free_ += now_ / count;
+      free_ += now_ / static_cast<double>(count);
       cv::multiply(free_weight_, weight_, free_weight_);
     }
     std::vector<float> noise;

@@ -225,7 +225,8 @@ class ModelFitter {
     }
     fit.covariance = variance * inverse.lazyProduct(inverse.transpose());
     const S sum = fit.covariance.trace();
-    expects(is_finite(sum), owner_, "variance of the parameters", sum, "finite");
+    expects(is_finite(sum), owner_, "variance of the parameters", sum,
+            "finite: a force is far too large");
   }
 
   const char* owner_;
