@@ -242,14 +242,14 @@ TEST_CASE("replay: a modulus stands for the gauge, and the rubber is said in sen
   work.replace("sensor.json", "0.79995", "0.79995, \"mooney_share\": 0.3");
   const Line of_rubber = work.run({8, 9})[0];
   // (1 - m + m / lambda^2) s instead of s, at about 15 % stretch
-  const double change = number(of_rubber, "wrench_fy_n") / number(gauged, "wrench_fy_n");
+  const double change = number(of_rubber, "wrench_fx_n") / number(gauged, "wrench_fx_n");
   CHECK(change < 0.98);
   CHECK(change > 0.85);
   work.replace("sensor.json", ", \"mooney_share\": 0.3", "");
   work.write("signals.csv", "frame,time_s\n0,0\n8,0.8\n");
   const auto lines = work.run({0, 9});
   CHECK(number(lines[0], "wrench_fz_n") == 0);
-  for (const char* axis : {"wrench_fy_n", "wrench_fz_n", "wrench_mx_nm"}) {
+  for (const char* axis : {"wrench_fx_n", "wrench_fz_n", "wrench_my_nm"}) {
     CHECK(number(lines[8], axis) == Approx(number(gauged, axis)).epsilon(0.06));
   }
 }
