@@ -23,7 +23,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/slip/detail/imprint_shift.hpp"
 
 namespace fingerpad {
@@ -142,7 +141,6 @@ class ContactSlide {
         : imprint_(slide.rows_, slide.cols_, 1),
           mask_(slide.rows_, slide.cols_, margin),
           region_(mask_),
-          growth_(slide.rows_, slide.cols_, margin),
           key_(slide.rows_, slide.cols_) {
       const auto dots = static_cast<std::size_t>(slide.dot_rows_ * slide.dot_cols_);
       dots_.resize(dots, missing());
@@ -161,7 +159,6 @@ class ContactSlide {
     friend class ContactSlide;
     static constexpr Index margin = 3;
     detail::PaddedCells<S> imprint_, mask_, region_;
-    detail::CellMorphology<S> growth_;
     detail::ImprintShift<S> key_;
     std::vector<Point2<S>> dots_, key_dots_;
     detail::ReservedVector<S> x_, y_;
@@ -240,10 +237,26 @@ class ContactSlide {
     return area;
   }
 
+  /// Marks the cells of a line that lie within State::margin of a marked one. `to` may be `from`.
+  static void grow(const S* from, Index step, Index count, S* to) {
+    Index last = -2 * State::margin - 1;  // the last marked cell so far
+    for (Index k = 0; k < count + State::margin; ++k) {
+      last = k < count && from[k * step] > S(0) ? k : last;
+      if (k >= State::margin) {
+        to[(k - State::margin) * step] = S(k - last <= 2 * State::margin ? 1 : 0);
+      }
+    }
+  }
+
   /// Makes this frame the key frame, with which later frames are compared.
   void set_key(State& state) const {
-    state.region_ = state.mask_;
-    state.growth_.grow(state.region_);
+    // the contact and the cells within a square of it
+    for (Index i = 0; i < rows_; ++i) {
+      grow(state.mask_.row(i), 1, cols_, state.region_.row(i));
+    }
+    for (Index j = 0; j < cols_; ++j) {
+      grow(state.region_.row(0) + j, state.region_.stride(), rows_, state.region_.row(0) + j);
+    }
     state.key_.take(state.imprint_, state.region_);
     for (std::size_t k = 0; k < state.dots_.size(); ++k) {
       state.key_dots_[k] = touches(state.dots_[k], state) ? state.dots_[k] : missing();

@@ -17,12 +17,37 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/image/detail/cell_filter.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 namespace detail {
+
+/// Cells with a border of `pad` zeros, which is never written.
+template <scalar S>
+class PaddedCells {
+ public:
+  PaddedCells(Index rows, Index cols, Index pad)
+      : rows_(rows),
+        cols_(cols),
+        pad_(pad),
+        cells_(static_cast<std::size_t>((rows + 2 * pad) * stride()), S(0)) {}
+
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+  Index stride() const { return cols_ + 2 * pad_; }
+  S* row(Index i) { return cells_.data() + (i + pad_) * stride() + pad_; }
+  const S* row(Index i) const { return cells_.data() + (i + pad_) * stride() + pad_; }
+  S& operator()(Index i, Index j) { return row(i)[j]; }
+  const S& operator()(Index i, Index j) const { return row(i)[j]; }
+  StridedView<const S> view() const { return {row(0), rows_, cols_, stride()}; }
+
+ private:
+  Index rows_;
+  Index cols_;
+  Index pad_;
+  std::vector<S> cells_;
+};
 
 /// A rotation about the middle of the imprint followed by a translation, in cells.
 template <scalar S>
