@@ -58,7 +58,8 @@ void try_contact(Input& in) {
   const Grid<float> depth(in, rows, cols, 0, 15);
   Grid<std::uint8_t> mask(rows, cols);
   published::SlidesContactOptions options;
-  options.condition = static_cast<published::ContactCondition>(in.whole(0, 2));
+  options.clamps = in.flag();
+  options.every_direction = in.flag();
   options.threshold_per_mm = in.number(-0.1, 0.1);
   options.directions = static_cast<int>(in.whole(0, 40));
   options.radius_px = in.number(1, 30);

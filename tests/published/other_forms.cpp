@@ -17,69 +17,99 @@
 using namespace fingerpad;
 using test::Image;
 
-TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[published]") {
-  std::vector<published::LoggedLight> pixels;
-  for (int k = 0; k < 50; ++k) {
-    const double risen = -3 + 0.08 * k, psi = 20 + 15 * std::sin(0.7 * k);
-    pixels.push_back({8e-4 * std::exp(0.2 * risen) * psi, risen, psi});
+namespace {
+
+/// A pad and a press of it, small enough for fifty radii.
+struct SmallPress {
+  static constexpr Index size = 36, radius = 6;
+  static constexpr double pitch_mm = 0.25;
+  Image<double> free{size, size}, pressed{size, size}, actual{size, size};
+  std::vector<double> change;
+
+  SmallPress() {
+    for (Index i = 0; i < size; ++i) {
+      for (Index j = 0; j < size; ++j) {
+        const double x = pitch_mm * static_cast<double>(j - 16);
+        const double y = pitch_mm * static_cast<double>(i - 19);
+        free(i, j) = 8 - 0.05 * (x * x + y * y);
+        pressed(i, j) = free(i, j) - 2 * std::exp(-(x * x + 0.7 * y * y) / 4);
+      }
+    }
+    change = published::inclination_change(pressed, free, pitch_mm);
+    for (Index i = 0; i < size; ++i) {
+      for (Index j = 0; j < size; ++j) {
+        actual(i, j) = published::without_neighbour_light(pressed(i, j), free(i, j),
+                                                          psi_sum(radius, i, j), 2e-3, 0.3);
+      }
+    }
   }
-  const auto exact = published::fit_by_logarithms(pixels);
-  CHECK(exact.ok());
-  CHECK(exact.m0_mm_per_rad == Approx(8e-4));
-  CHECK(exact.n_per_mm == Approx(0.2));
-  CHECK(exact.sum_sq < 1e-20);
-  CHECK(exact.used == 50);
-  // pixels without a logarithm are left out
-  pixels[3].error_mm = -0.01;
-  pixels[7].psi_sum_rad = 0;
-  const auto fewer = published::fit_by_logarithms(pixels);
-  CHECK(fewer.left_out == 2);
-  CHECK(fewer.n_per_mm == Approx(0.2));
-  // least squares of logarithms: the weight of a factor on one pixel depends on its position, not
-  // on its size
-  pixels = {{std::exp(0.0), 0, 1}, {std::exp(1.0), 1, 1}, {std::exp(5.0), 2, 1}};
-  const auto bent = published::fit_by_logarithms(pixels);
-  CHECK(bent.n_per_mm == Approx(2.5));
-  CHECK(std::log(bent.m0_mm_per_rad) == Approx(-0.5));
-  CHECK(bent.sum_sq == Approx(0.25 + 1 + 0.25));
-  CHECK_FALSE(published::fit_by_logarithms(std::span(pixels).first(1)).ok());
+  double psi_sum(Index r, Index i, Index j) const {
+    return published::disc_sum(change, size, r, i, j);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("published fit of the neighbouring light: a line of logarithms", "[published]") {
+  // least squares of logarithms: the weight of a factor on one error depends on its position, not
+  // on its size; an error that is not positive has no logarithm
+  SmallPress press;
+  for (Index i = 0; i < press.size; ++i) {
+    for (Index j = 0; j < press.size; ++j) {
+      const double factor = (i + j) % 7 == 0 ? -1 : std::exp(0.1 * static_cast<double>(j % 5));
+      const double error = press.pressed(i, j) - press.actual(i, j);
+      press.actual(i, j) = press.pressed(i, j) - factor * error;
+    }
+  }
+  const auto found =
+      published::identify_neighbour_light(press.pressed, press.actual, press.free, press.pitch_mm);
+  REQUIRE(found.ok());
+  const auto sum_sq = [&](double ln_m0, double n) {
+    double sum = 0;
+    for (Index i = 0; i < press.size; ++i) {
+      for (Index j = 0; j < press.size; ++j) {
+        const double psi_sum = press.psi_sum(found.radius_px, i, j);
+        const double error = press.pressed(i, j) - press.actual(i, j);
+        if (error > 0 && psi_sum > 0) {
+          const double risen = press.pressed(i, j) - press.free(i, j);
+          sum += square(std::log(error) - std::log(psi_sum) - ln_m0 - n * risen);
+        }
+      }
+    }
+    return sum;
+  };
+  const double ln_m0 = std::log(found.m0_mm_per_rad), n = found.n_per_mm;
+  CHECK(found.sum_sq == Approx(sum_sq(ln_m0, n)).epsilon(1e-9));
+  CHECK(found.sum_sq > 1);
+  // the least: a parabola in each parameter, alike on both sides
+  for (const double step : {0.01, 0.1}) {
+    CHECK(sum_sq(ln_m0 + step, n) > found.sum_sq);
+    CHECK(sum_sq(ln_m0 + step, n) == Approx(sum_sq(ln_m0 - step, n)).epsilon(1e-9));
+    CHECK(sum_sq(ln_m0, n + step) == Approx(sum_sq(ln_m0, n - step)).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("published neighbouring light: r, m_0 and n of presses are found again", "[published]") {
-  constexpr Index size = 36, radius = 6;
-  constexpr double pitch_mm = 0.25;
-  test::Image<double> free(size, size), pressed(size, size), actual(size, size);
-  for (Index i = 0; i < size; ++i) {
-    for (Index j = 0; j < size; ++j) {
-      const double x = pitch_mm * static_cast<double>(j - 16);
-      const double y = pitch_mm * static_cast<double>(i - 19);
-      free(i, j) = 8 - 0.05 * (x * x + y * y);
-      pressed(i, j) = free(i, j) - 2 * std::exp(-(x * x + 0.7 * y * y) / 4);
-    }
-  }
-  const auto change = published::inclination_change(pressed, free, pitch_mm);
-  for (Index i = 0; i < size; ++i) {
-    for (Index j = 0; j < size; ++j) {
-      const double psi_sum = published::disc_sum(change, size, radius, i, j);
-      actual(i, j) =
-          published::without_neighbour_light(pressed(i, j), free(i, j), psi_sum, 2e-3, 0.3);
-    }
-  }
-  const auto found = published::identify_neighbour_light(pressed, actual, free, pitch_mm);
+  const SmallPress press;
+  const auto found =
+      published::identify_neighbour_light(press.pressed, press.actual, press.free, press.pitch_mm);
   REQUIRE(found.ok());
-  CHECK(found.radius_px == radius);
-  CHECK(found.fit.m0_mm_per_rad == Approx(2e-3));
-  CHECK(found.fit.n_per_mm == Approx(0.3));
-  CHECK(found.sum_sq[radius - 1] < 1e-9);
-  CHECK(found.sum_sq[radius] > 1e-3);
-  CHECK(found.sum_sq[49] > 1e-3);
+  CHECK(found.radius_px == press.radius);
+  CHECK(found.m0_mm_per_rad == Approx(2e-3));
+  CHECK(found.n_per_mm == Approx(0.3));
+  CHECK(found.sum_sq < 1e-9);
   // the default compensation is the same in the middle of the image
-  NeighbourLightCompensation<double> light({radius, 2e-3, 0.3}, pitch_mm, free);
-  test::Image<double> out(size, size);
-  REQUIRE(light(pressed, out) == FrameStatus::ok);
-  CHECK(out(18, 17) == Approx(actual(18, 17)).epsilon(1e-9));
-  const test::Image<double> narrow(size, size - 1);
-  CHECK_FALSE(published::identify_neighbour_light(pressed, narrow, free, pitch_mm).ok());
+  NeighbourLightCompensation<double> light({press.radius, 2e-3, 0.3}, press.pitch_mm, press.free);
+  test::Image<double> out(press.size, press.size);
+  REQUIRE(light(press.pressed, out) == FrameStatus::ok);
+  CHECK(out(18, 17) == Approx(press.actual(18, 17)).epsilon(1e-9));
+  const test::Image<double> narrow(press.size, press.size - 1);
+  CHECK_FALSE(
+      published::identify_neighbour_light(press.pressed, narrow, press.free, press.pitch_mm).ok());
+  // no error has a logarithm
+  CHECK_FALSE(
+      published::identify_neighbour_light(press.pressed, press.pressed, press.free, press.pitch_mm)
+          .ok());
 }
 
 TEST_CASE("published circle through three points", "[published]") {
@@ -100,8 +130,7 @@ TEST_CASE("published circle through three points", "[published]") {
 }
 
 TEST_CASE("published contact conditions: what each lets pass", "[published]") {
-  using published::ContactCondition;
-  using published::SlidesContactOptions;
+  enum Condition { twice, clamped, every };
   const auto surface = [](double along_x, double along_y) {
     Image<double> z(61, 61);
     for (Index i = 0; i < 61; ++i) {
@@ -113,15 +142,14 @@ TEST_CASE("published contact conditions: what each lets pass", "[published]") {
     }
     return z;
   };
-  const auto touches = [&](ContactCondition condition, double along_x, double along_y,
+  const auto touches = [&](Condition condition, double along_x, double along_y,
                            double threshold = 0.01) {
-    SlidesContactOptions o;
-    o.condition = condition;
+    published::SlidesContactOptions o;
+    o.clamps = condition == clamped;
+    o.every_direction = condition == every;
     o.threshold_per_mm = threshold;
     return published::touches(surface(along_x, along_y), 30, 30, o);
   };
-  const auto twice = ContactCondition::twice_mean, clamped = ContactCondition::clamped_mean,
-             every = ContactCondition::every_direction;
   // pressed by a ball: all touch
   CHECK(touches(twice, -0.05, -0.05));
   CHECK(touches(clamped, -0.05, -0.05));

@@ -65,7 +65,8 @@ inline Section fluid_section() {
                                            depth_mm, c.red, c.green};
     };
     const auto found = published::identify_fluid(at(12), std::array{at(1), at(4), at(8)});
-    printed.add(found.ok(), found.fluid.c_R, found.fluid.c_G, found.fluid.kappa);
+    const auto fluid = found.value_or(published::Fluid<double>());
+    printed.add(found.has_value(), fluid.c_R, fluid.c_G, fluid.kappa);
     std::vector<DepthSample<double>> samples;
     for (int n = 0; n < 60; ++n) {
       const double depth_mm = 0.5 + 11.5 * n / 59;

@@ -10,7 +10,6 @@
 // mask is not cleaned. With noise the printed threshold misses half of a flat contact: E018. The
 // slides' rule for it is `threshold_by_slides`.
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -33,28 +32,21 @@ S circle_center_curvature(const S& radius_mm,
                           const S& center_mm,
                           const S& after_mm) {
   using std::sqrt;
-  const S r_sq = radius_mm * radius_mm;
-  const S before_sq = before_mm * before_mm;
-  const S center_sq = center_mm * center_mm;
-  const S after_sq = after_mm * after_mm;
-  const S z = (S(2) * r_sq + before_sq + after_sq - S(2) * center_sq) /
-              (S(2) * (before_mm + after_mm - S(2) * center_mm));
-  const S u =
-      (r_sq + after_sq - center_sq - S(2) * (after_mm - center_mm) * z) / (S(2) * radius_mm);
-  const S height = center_mm - z;
-  const S radius_of_circle = sqrt(S(u * u + height * height));
-  const S curvature = S(1) / radius_of_circle;
-  return value(height) < 0 ? S(-curvature) : curvature;
+  const S z =
+      (S(2) * square(radius_mm) + square(before_mm) + square(after_mm) - S(2) * square(center_mm)) /
+      (S(2) * (before_mm + after_mm - S(2) * center_mm));
+  const S u = (square(radius_mm) + square(after_mm) - square(center_mm) -
+               S(2) * (after_mm - center_mm) * z) /
+              (S(2) * radius_mm);
+  const S curvature = S(1) / sqrt(square(u) + square(S(center_mm - z)));
+  return value(center_mm) < value(z) ? -curvature : curvature;
 }
 
-enum class ContactCondition : std::uint8_t {
-  twice_mean,       ///< eq. 12: the sum over 2n directions, divided by n
-  clamped_mean,     ///< f of the slides: the mean over n directions, negative curvatures set to 0
-  every_direction,  ///< 1/R' < delta_R in each of n directions
-};
-
 struct SlidesContactOptions {
-  ContactCondition condition = ContactCondition::twice_mean;
+  /// f of the slides: the mean over n directions, negative curvatures set to 0. Else eq. 12: the
+  /// sum over 2n directions, divided by n.
+  bool clamps = false;
+  bool every_direction = false;       ///< the slides' first test: 1/R' < delta_R in each of n
   double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
   int directions = 18;                ///< n, in [1, 360]
   double radius_px = 10;              ///< r, in [1, 1000]; 25 px in the slides
@@ -88,20 +80,17 @@ S section_curvature(const Depth& depth_mm,
 /// Whether the membrane is in contact at (row, col).
 template <scalar S = double, grid Depth>
 bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOptions& o) {
-  const bool twice = o.condition == ContactCondition::twice_mean;
-  const int count = twice ? 2 * o.directions : o.directions;
+  const int count = o.clamps || o.every_direction ? o.directions : 2 * o.directions;
   const S threshold = S(o.threshold_per_mm);
   S sum = S(0);
   bool all_below = true;
   for (int i = 1; i <= count; ++i) {
     const S k = section_curvature<S>(depth_mm, row, col, std::numbers::pi * i / count, o.radius_px,
                                      o.pitch_mm);
-    const bool clamps = o.condition == ContactCondition::clamped_mean && k < S(0);
-    sum += clamps ? S(0) : k;
+    sum += o.clamps && k < S(0) ? S(0) : k;
     all_below = all_below && k < threshold;  // false for NaN
   }
-  const S mean = sum / S(o.directions);  // eq. 12 divides 2n curvatures by n
-  return o.condition == ContactCondition::every_direction ? all_below : mean < threshold;
+  return o.every_direction ? all_below : sum / S(o.directions) < threshold;
 }
 
 /// The contact mask of a height map. Every pixel gets the answer at the center of its block of

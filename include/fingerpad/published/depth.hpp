@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,14 +44,13 @@ struct Fluid {
 /// What a pixel's ray gives to the equations.
 template <scalar S = double>
 struct PixelRay {
-  S cos_phi1;  ///< in the fluid
-  S cos_phi2;  ///< in air
-  S k;         ///< 1 + 1/cos(phi1): the light goes k l to depth l and back
-  S h2_mm;     ///< of the point in the fluid from which the light seems to come
+  S k;      ///< 1 + 1/cos(phi1): the light goes k l to depth l and back
+  S h2_mm;  ///< of the point in the fluid from which the light seems to come
 };
 
-/// The ray of the pixel at (row, col). h2 = n h1 cos^3(phi1) / cos^3(phi2) is the closed form of
-/// the slides' chain of differentials; it holds in the plane of the ray only (E007).
+/// The ray of the pixel at (row, col), at the angle phi1 in the fluid and phi2 in air. h2 = n h1
+/// cos^3(phi1) / cos^3(phi2) is the closed form of the slides' chain of differentials; it holds in
+/// the plane of the ray only (E007).
 template <scalar S>
 PixelRay<S> ray_of(const Pinhole<S>& camera, const S& row, const S& col) {
   using std::sqrt;
@@ -61,7 +61,7 @@ PixelRay<S> ray_of(const Pinhole<S>& camera, const S& row, const S& col) {
   const S sin1_sq = tan_sq * cos2 * cos2 / square(camera.n);
   const S cos1 = sqrt(S(1) - sin1_sq);
   const S ratio = cos1 / cos2;
-  return {cos1, cos2, S(1) + S(1) / cos1, camera.n * camera.h1_mm * ratio * ratio * ratio};
+  return {S(1) + S(1) / cos1, camera.n * camera.h1_mm * ratio * ratio * ratio};
 }
 
 /// Eq. 13 of Ito et al. 2011 as printed, with the sine. It is right only if depth_mm is a length
@@ -162,24 +162,18 @@ class DepthEstimator {
     expects(has_size(green) && has_size(free_depth_mm), "published::DepthEstimator",
             "rows of free_depth_mm", static_cast<long long>(fingerpad::rows(free_depth_mm)),
             "of the same size as the red and green image");
-    const auto depth = as_view(free_depth_mm);
-    for (auto* plane : {&g_, &ones_, &red_, &green_, &sum_}) {
-      plane->assign(static_cast<std::size_t>(rows_ * cols_), S(0));
-    }
-    for_each([&](Index i, Index j, std::size_t at) {
-      in_pad_.push_back(value(static_cast<S>(depth(i, j))) >= 0);
-      const PixelRay<S> ray =
-          ray_of(options_.camera, S(static_cast<double>(i)), S(static_cast<double>(j)));
-      k_.push_back(ray.k);
-      h2_mm_.push_back(ray.h2_mm);
-      g_[at] = not_a_number<S>();
-    });
-    average(as_view(red), as_view(green));
-    for_each([&](Index i, Index j, std::size_t at) {
-      const S l0 = static_cast<S>(depth(i, j));
-      if (value(l0) > 0) {
-        g_[at] = quotient(options_.fluid, k_[at], h2_mm_[at], red_[at], green_[at], l0);
+    const auto l0 = as_view(free_depth_mm);
+    for (Index i = 0; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        in_pad_.push_back(value(static_cast<S>(l0(i, j))) >= 0);
       }
+    }
+    columns_.resize(static_cast<std::size_t>(cols_));
+    for_each_mean(as_view(red), as_view(green), [&](Index i, Index j, const S& b_R, const S& b_G) {
+      const auto ray = ray_at(i, j);
+      const S l = static_cast<S>(l0(i, j));
+      g_.push_back(value(l) > 0 ? quotient(options_.fluid, ray.k, ray.h2_mm, b_R, b_G, l)
+                                : not_a_number<S>());
     });
   }
 
@@ -190,78 +184,59 @@ class DepthEstimator {
     if (!(has_size(red) && has_size(green) && has_size(depth_mm))) {
       return false;
     }
-    average(as_view(red), as_view(green));
     const auto to = as_view(depth_mm);
-    for_each([&](Index i, Index j, std::size_t at) {
-      const bool known = is_finite(g_[at]) && is_finite(red_[at]);
-      to(i, j) = static_cast<cell_t<Depth>>(known ? bisect(options_.fluid, k_[at], h2_mm_[at],
-                                                           g_[at], red_[at], green_[at],
-                                                           options_.max_depth_mm, options_.halvings)
-                                                  : not_a_number<S>());
+    for_each_mean(as_view(red), as_view(green), [&](Index i, Index j, const S& b_R, const S& b_G) {
+      const S g = g_[place(i, j)];
+      S l = not_a_number<S>();
+      if (is_finite(g) && is_finite(b_R)) {
+        const auto ray = ray_at(i, j);
+        l = bisect(options_.fluid, ray.k, ray.h2_mm, g, b_R, b_G, options_.max_depth_mm,
+                   options_.halvings);
+      }
+      to(i, j) = static_cast<cell_t<Depth>>(l);
     });
     return true;
   }
 
  private:
-  using Plane = std::vector<S>;
+  using Sums = Point3<S>;  // over pixels that count: of 1, red and green
 
   template <class G>
   bool has_size(const G& g) const {
     return fingerpad::rows(g) == rows_ && fingerpad::cols(g) == cols_;
   }
-  template <class Visit>
-  void for_each(const Visit& visit) const {
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        visit(i, j, static_cast<std::size_t>(i * cols_ + j));
+  std::size_t place(Index i, Index j) const { return static_cast<std::size_t>(i * cols_ + j); }
+  PixelRay<S> ray_at(Index i, Index j) const {
+    return ray_of(options_.camera, S(static_cast<double>(i)), S(static_cast<double>(j)));
+  }
+
+  /// Calls visit(i, j, b_R, b_G) with the means of each pixel's window in grey levels, NaN where
+  /// none counts. The sums of columns move down the image, and their sum along each row.
+  template <class Red, class Green, class Visit>
+  void for_each_mean(const Red& red, const Green& green, const Visit& visit) {
+    const auto counts = [](const S& x) { return value(x) > 0 && value(x) < 255; };
+    const auto pixel = [&](Index i, Index j) -> Sums {
+      if (i < 0 || i >= rows_ || !in_pad_[place(i, j)]) {
+        return {S(0), S(0), S(0)};
       }
-    }
-  }
-
-  /// red_ and green_: the means of a frame in grey levels.
-  template <class Red, class Green>
-  void average(const Red& red, const Green& green) {
-    for_each([&](Index i, Index j, std::size_t at) {
       const S r = static_cast<S>(red(i, j)) / options_.units_per_level;
-      const S b = static_cast<S>(green(i, j)) / options_.units_per_level;
-      const auto has_light = [](const S& x) { return value(x) > 0 && value(x) < 255; };
-      const bool counts = in_pad_[at] && has_light(r) && has_light(b);
-      ones_[at] = S(counts ? 1 : 0);
-      red_[at] = counts ? r : S(0);
-      green_[at] = counts ? b : S(0);
-    });
-    for (Plane* plane : {&ones_, &red_, &green_}) {
-      sum_over_window(*plane);
-    }
-    for (std::size_t at = 0; at < ones_.size(); ++at) {
-      red_[at] = red_[at] / ones_[at];  // 0 / 0: no pixel counts
-      green_[at] = green_[at] / ones_[at];
-    }
-  }
-
-  /// Sums along columns, then along rows.
-  void sum_over_window(Plane& plane) {
-    const Index r = options_.window_px / 2;
-    sum_lines(plane, sum_, cols_, 1, rows_, cols_, r);
-    sum_lines(sum_, plane, rows_, cols_, cols_, 1, r);
-  }
-  static void sum_lines(const Plane& from,
-                        Plane& to,
-                        Index lines,
-                        Index line_stride,
-                        Index count,
-                        Index stride,
-                        Index r) {
-    for (Index line = 0; line < lines; ++line) {
-      const auto at = [&](Index k) {
-        return static_cast<std::size_t>(line * line_stride + k * stride);
-      };
-      S sum = S(0);
-      for (Index k = -r; k < count; ++k) {
-        sum = k + r < count ? sum + from[at(k + r)] : sum;
-        sum = k - r - 1 >= 0 ? sum - from[at(k - r - 1)] : sum;
-        if (k >= 0) {
-          to[at(k)] = sum;
+      const S g = static_cast<S>(green(i, j)) / options_.units_per_level;
+      return counts(r) && counts(g) ? Sums{S(1), r, g} : Sums{S(0), S(0), S(0)};
+    };
+    const auto column = [&](Index j) {
+      return j < 0 || j >= cols_ ? Sums{S(0), S(0), S(0)} : columns_[static_cast<std::size_t>(j)];
+    };
+    const Index half = options_.window_px / 2;
+    columns_.assign(columns_.size(), Sums{S(0), S(0), S(0)});
+    for (Index i = -half; i < rows_; ++i) {
+      for (Index j = 0; j < cols_; ++j) {
+        columns_[static_cast<std::size_t>(j)] += pixel(i + half, j) - pixel(i - half - 1, j);
+      }
+      Sums sum = {S(0), S(0), S(0)};
+      for (Index j = -half; j < cols_ && i >= 0; ++j) {
+        sum += column(j + half) - column(j - half - 1);
+        if (j >= 0) {
+          visit(i, j, sum.y / sum.x, sum.z / sum.x);
         }
       }
     }
@@ -270,8 +245,8 @@ class DepthEstimator {
   DepthOptions<S> options_;
   Index rows_, cols_;
   std::vector<bool> in_pad_;
-  Plane k_, h2_mm_, g_;             // of each pixel
-  Plane ones_, red_, green_, sum_;  // of a frame
+  std::vector<S> g_;           // of each pixel
+  std::vector<Sums> columns_;  // over the window's rows
 };
 
 /// A colour at a known depth.
@@ -284,84 +259,54 @@ struct KnownPixel {
   S b_G;
 };
 
-template <scalar S = double>
-struct [[nodiscard]] Identification {
-  Fluid<S> fluid = {};  ///< parameters after the last step
-  S residual = S(0);    ///< largest of |f(l_i) - f(l_0)| over |f(l_0)|
-  int iterations = 0;
-  bool converged = false;
-
-  bool ok() const { return converged; }
-};
-
 /// c_R, c_G and kappa from three measurements at known depths and a reference: f(l_i) = f(l_0), i =
 /// 1, 2, 3, "solving by numerical analytical approach such as Newton method". Newton's method from
 /// `guess`, with derivatives by central differences; each step is halved until the residual falls.
-/// This hardly determines the parameters (docs/papers.md). Never throws, bounded time.
+/// No fluid where that does not reach roundoff. This hardly determines the parameters
+/// (docs/papers.md). Never throws, bounded time.
 template <scalar S>
-Identification<S> identify_fluid(const KnownPixel<S>& reference,
-                                 const std::array<KnownPixel<S>, 3>& measured,
-                                 const Fluid<S>& guess = {},
-                                 int max_iterations = 100) {
+std::optional<Fluid<S>> identify_fluid(const KnownPixel<S>& reference,
+                                       const std::array<KnownPixel<S>, 3>& measured,
+                                       const Fluid<S>& guess = {}) {
   using std::sqrt;
-  const auto f = [](const Point3<S>& p, const KnownPixel<S>& at) {
-    return quotient(Fluid<S>{p.x, p.y, p.z}, at.k, at.h2_mm, at.b_R, at.b_G, at.depth_mm);
-  };
-  const auto residuals = [&](const Point3<S>& p) {
-    const S g = f(p, reference);
-    return Point3<S>{f(p, measured[0]) / g - S(1), f(p, measured[1]) / g - S(1),
-                     f(p, measured[2]) / g - S(1)};
-  };
-  const auto size = [](const Point3<S>& r) {
-    S largest = S(0);
-    for (const S& x : {r.x, r.y, r.z}) {
-      const S magnitude = value(x) < 0 ? -x : x;
-      largest = !is_finite(x) || value(magnitude) > value(largest) ? magnitude : largest;
-    }
-    return largest;
-  };
-  Identification<S> out;
-  Point3<S> p = {guess.c_R, guess.c_G, guess.kappa};
-  Point3<S> r = residuals(p);
   const S step = sqrt(S(epsilon<S>()));
-  for (; out.iterations < max_iterations; ++out.iterations) {
-    std::array<Point3<S>, 3> slope = {};
-    for (std::size_t j = 0; j < 3; ++j) {
-      S Point3<S>::*const of = std::array{&Point3<S>::x, &Point3<S>::y, &Point3<S>::z}[j];
-      Point3<S> up = p, down = p;
-      up.*of += step * p.*of;
-      down.*of -= step * p.*of;
-      slope[j] = (S(1) / (up.*of - down.*of)) * (residuals(up) - residuals(down));
-    }
+  const auto residuals = [&](const Point3<S>& p) {  // f(l_i) / f(l_0) - 1
+    const auto f = [&](const KnownPixel<S>& at) {
+      return quotient(Fluid<S>{p.x, p.y, p.z}, at.k, at.h2_mm, at.b_R, at.b_G, at.depth_mm);
+    };
+    const S g = f(reference);
+    return Point3<S>{f(measured[0]) / g - S(1), f(measured[1]) / g - S(1),
+                     f(measured[2]) / g - S(1)};
+  };
+  Point3<S> p = {guess.c_R, guess.c_G, guess.kappa};
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Point3<S> r = residuals(p);
+    const auto slope = [&](const Point3<S>& along) {
+      return (residuals(p + step * along) - residuals(p - step * along)) / (S(2) * step);
+    };
+    const Point3<S> by_R = slope({p.x, S(0), S(0)}), by_G = slope({S(0), p.y, S(0)}),
+                    by_kappa = slope({S(0), S(0), p.z});
     // Cramer's rule; not finite if the depths do not determine the parameters
-    const S volume = dot(slope[0], cross(slope[1], slope[2]));
-    const Point3<S> change = {dot(r, cross(slope[1], slope[2])) / volume,
-                              dot(r, cross(slope[2], slope[0])) / volume,
-                              dot(r, cross(slope[0], slope[1])) / volume};
-    if (!is_finite(size(change))) {
-      break;
-    }
-    const S before = size(r);
-    S share = S(1);
-    bool falls = false;
-    for (int half = 0; half < 30 && !falls; ++half, share = share / S(2)) {
-      const Point3<S> next = p - share * change;
+    const S volume = dot(by_R, cross(by_G, by_kappa));
+    Point3<S> change = {p.x * dot(r, cross(by_G, by_kappa)) / volume,
+                        p.y * dot(r, cross(by_kappa, by_R)) / volume,
+                        p.z * dot(r, cross(by_R, by_G)) / volume};
+    const auto falls = [&](const Point3<S>& next) {
       const Point3<S> there = residuals(next);
-      falls = value(next.x) > 0 && value(next.y) > 0 && value(next.z) > 0 &&
-              value(size(there)) < value(before);
-      if (falls) {
-        p = next;
-        r = there;
-      }
+      return value(next.x) > 0 && value(next.y) > 0 && value(next.z) > 0 &&
+             value(dot(there, there)) < value(dot(r, r));
+    };
+    for (int half = 0; half < 30 && !falls(p - change); ++half) {
+      change = change / S(2);
     }
-    if (!falls) {  // converged to roundoff, or stuck
-      out.converged = value(before) < value(S(1000) * step * step);
-      break;
+    if (!falls(p - change)) {  // converged to roundoff, or stuck
+      const bool converged =
+          is_finite(change) && value(dot(r, r)) < value(square(S(1000) * step * step));
+      return converged ? std::optional(Fluid<S>{p.x, p.y, p.z}) : std::nullopt;
     }
+    p = p - change;
   }
-  out.fluid = {p.x, p.y, p.z};
-  out.residual = size(r);
-  return out;
+  return std::nullopt;
 }
 
 }  // namespace published

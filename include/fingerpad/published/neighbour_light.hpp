@@ -10,7 +10,6 @@
 // by least squares, and then the best radius. Pixels whose error or sum is not positive have no
 // logarithm and are left out, which biases the fit toward large errors (E011).
 // depth/neighbour_light.hpp and calibrate/neighbour_light.hpp are the defaults.
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -22,55 +21,6 @@
 namespace fingerpad {
 inline namespace v0 {
 namespace published {
-
-/// Data of one pixel, for one radius.
-struct LoggedLight {
-  double error_mm;     ///< l - l_a: measured depth less actual depth
-  double risen_mm;     ///< l - l_0: measured depth less that of the free pad
-  double psi_sum_rad;  ///< sum over the disc of psi(t) - psi(t0)
-};
-
-struct [[nodiscard]] LoggedFit {
-  bool determined = false;  ///< at least two pixels of different depth have logarithms
-  double m0_mm_per_rad = 0;
-  double n_per_mm = 0;
-  double sum_sq = 0;  ///< S = sum (L - F)^2; the best radius has the smallest
-  Index used = 0;     ///< pixels whose logarithms exist
-  Index left_out = 0;
-
-  bool ok() const { return determined; }
-};
-
-/// ln m_0 and n by least squares, in closed form. O(pixels), allocates nothing.
-inline LoggedFit fit_by_logarithms(std::span<const LoggedLight> pixels) {
-  LoggedFit fit;
-  double x = 0, y = 0, xx = 0, xy = 0, yy = 0;  // of L - ln psi_sum = ln m_0 + n risen
-  for (const LoggedLight& p : pixels) {
-    if (!(p.error_mm > 0 && p.psi_sum_rad > 0 && is_finite(p.risen_mm))) {
-      ++fit.left_out;
-      continue;
-    }
-    const double ratio = std::log(p.error_mm) - std::log(p.psi_sum_rad);
-    x += p.risen_mm;
-    y += ratio;
-    xx += p.risen_mm * p.risen_mm;
-    xy += p.risen_mm * ratio;
-    yy += ratio * ratio;
-    ++fit.used;
-  }
-  const double count = static_cast<double>(fit.used);
-  const double spread = xx - x * x / count;
-  if (!(spread > 1e-12 * xx)) {
-    return fit;
-  }
-  fit.determined = true;
-  fit.n_per_mm = (xy - x * y / count) / spread;
-  const double ln_m0 = (y - fit.n_per_mm * x) / count;
-  fit.m0_mm_per_rad = std::exp(ln_m0);
-  fit.sum_sq = yy - ln_m0 * y - fit.n_per_mm * xy;
-  fit.sum_sq = fit.sum_sq > 0 ? fit.sum_sq : 0;
-  return fit;
-}
 
 /// psi at pixel (i, j) in rad, by central differences; NaN at the image's border and where a depth
 /// is missing.
@@ -126,9 +76,10 @@ inline double without_neighbour_light(double depth_mm,
 }
 
 struct [[nodiscard]] IdentifiedLight {
-  Index radius_px = 0;                 ///< r; 0: no radius has a fit
-  LoggedFit fit = {};                  ///< m_0, n and S at this radius
-  std::array<double, 50> sum_sq = {};  ///< S of each radius, 1 px first; NaN: no fit
+  Index radius_px = 0;  ///< r; 0: at no radius two pixels of different depth have logarithms
+  double m0_mm_per_rad = 0;
+  double n_per_mm = 0;
+  double sum_sq = 0;  ///< S = sum (L - F)^2, the smallest of all radii
 
   bool ok() const { return radius_px > 0; }
 };
@@ -142,27 +93,37 @@ IdentifiedLight identify_neighbour_light(const Depth& depth_mm,
                                          double pitch_mm) {
   IdentifiedLight best;
   const auto l = as_view(depth_mm);
-  const auto actual = as_view(actual_mm);
-  const auto free = as_view(free_mm);
-  if (!same_size(l, actual) || !same_size(l, free)) {
+  const auto l_a = as_view(actual_mm);
+  const auto l_0 = as_view(free_mm);
+  if (!same_size(l, l_a) || !same_size(l, l_0)) {
     return best;
   }
-  const std::vector<double> change = inclination_change(l, free, pitch_mm);
+  const std::vector<double> change = inclination_change(l, l_0, pitch_mm);
   for (Index r = 1; r <= 50; ++r) {
-    std::vector<LoggedLight> pixels;
+    // sums of x = l - l_0 and y = L - ln psi_sum, for the line y = ln m_0 + n x
+    double count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     for (Index i = 0; i < l.rows(); ++i) {
       for (Index j = 0; j < l.cols(); ++j) {
         const double here = static_cast<double>(l(i, j));
-        pixels.push_back({here - static_cast<double>(actual(i, j)),
-                          here - static_cast<double>(free(i, j)),
-                          disc_sum(change, l.cols(), r, i, j)});
+        const double risen = here - static_cast<double>(l_0(i, j));
+        const double error = here - static_cast<double>(l_a(i, j));
+        const double psi_sum = disc_sum(change, l.cols(), r, i, j);
+        if (error > 0 && psi_sum > 0 && is_finite(risen)) {
+          const double ratio = std::log(error) - std::log(psi_sum);
+          count += 1;
+          x += risen;
+          y += ratio;
+          xx += risen * risen;
+          xy += risen * ratio;
+          yy += ratio * ratio;
+        }
       }
     }
-    const LoggedFit fit = fit_by_logarithms(pixels);
-    best.sum_sq[static_cast<std::size_t>(r - 1)] = fit.ok() ? fit.sum_sq : not_a_number<double>();
-    if (fit.ok() && (!best.ok() || fit.sum_sq < best.fit.sum_sq)) {
-      best.radius_px = r;
-      best.fit = fit;
+    const double spread = xx - x * x / count;
+    const double n = (xy - x * y / count) / spread, ln_m0 = (y - n * x) / count;
+    const double sum_sq = std::fmax(yy - ln_m0 * y - n * xy, 0);
+    if (spread > 1e-12 * xx && (!best.ok() || sum_sq < best.sum_sq)) {
+      best = {r, std::exp(ln_m0), n, sum_sq};
     }
   }
   return best;
