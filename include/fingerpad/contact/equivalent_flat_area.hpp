@@ -112,7 +112,10 @@ class EquivalentFlatArea {
                      Index rows,
                      Index cols,
                      const FlatAreaOptions& options = {})
-      : options_(checked(camera, rows, cols, options)), image_rows_(rows), image_cols_(cols) {
+      : options_(options), image_rows_(rows), image_cols_(cols) {
+    expects_grid_size("EquivalentFlatArea", rows, cols, 1);
+    require(camera);
+    require(options);
     const double width_mm = static_cast<double>(value(camera.pitch_mm));
     const double height_mm = width_mm * static_cast<double>(value(camera.pixel_aspect));
     const auto step = [&](double pixel_mm) {
@@ -182,18 +185,31 @@ class EquivalentFlatArea {
   struct Curve {
     S area_mm2 = S(0), flux_mm = S(0);
     Index points = 0, unseen = 0;
-  };
 
-  template <class CameraType>
-  static const FlatAreaOptions& checked(const CameraType& camera,
-                                        Index rows,
-                                        Index cols,
-                                        const FlatAreaOptions& options) {
-    expects_grid_size("EquivalentFlatArea", rows, cols, 1);
-    require(camera);
-    require(options);
-    return options;
-  }
+    /// Adds a point of the lattice. It is not seen where it or a neighbour has no depth.
+    void add(const Point3<S>* at, Index cols) {
+      ++points;
+      ++unseen;
+      if (is_finite(at->z)) {
+        const detail::FlatAreaPoint<S> point(at, cols);
+        if (is_finite(point.flux_mm) && !point.is_steep) {
+          area_mm2 += point.area_mm2;
+          flux_mm += point.flux_mm;
+          --unseen;
+        }
+      }
+    }
+
+    /// Adds a curve; its points that are not seen count like the others.
+    void add(const Curve& other) {
+      const S seen = S(static_cast<double>((std::max)(Index(1), other.points - other.unseen)));
+      const S fill = S(static_cast<double>(other.points)) / seen;
+      area_mm2 += fill * other.area_mm2;
+      flux_mm += fill * other.flux_mm;
+      points += other.points;
+      unseen += other.unseen;
+    }
+  };
 
   /// In a lattice with a border of points that are missing and far.
   std::size_t place(Index i, Index j) const {
@@ -203,20 +219,20 @@ class EquivalentFlatArea {
 
   /// From 0 in contact and far elsewhere to the distance from the contact, within 6 %.
   void spread() {
-    const auto from = [&](Index i, Index j, Index next_row, Index before) {
-      Index* here = distances_.data() + place(i, j);
-      const Index beside = (std::min)(here[next_row], here[before]) + straight;
-      const Index across = (std::min)(here[next_row - 1], here[next_row + 1]) + diagonal;
-      *here = (std::min)(*here, (std::min)(beside, across));
+    const Index width = cols_ + 2;
+    const auto nearest = [](Index* here, Index beside, Index next_row) {
+      *here = (std::min)({*here, beside + straight, here[next_row] + straight,
+                          here[next_row - 1] + diagonal, here[next_row + 1] + diagonal});
+      return *here;
     };
     for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        from(i, j, -(cols_ + 2), -1);
+      for (Index j = 0, beside = far(); j < cols_; ++j) {
+        beside = nearest(&distances_[place(i, j)], beside, -width);
       }
     }
     for (Index i = rows_; i-- > 0;) {
-      for (Index j = cols_; j-- > 0;) {
-        from(i, j, cols_ + 2, 1);
+      for (Index j = cols_, beside = far(); j-- > 0;) {
+        beside = nearest(&distances_[place(i, j)], beside, width);
       }
     }
   }
@@ -227,28 +243,15 @@ class EquivalentFlatArea {
     const Index last = static_cast<Index>(curves_.size()) - 1;
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
-        const Index beyond = (std::max)(Index(0), distances_[place(i, j)] - margin_);
-        Curve& curve =
-            curves_[static_cast<std::size_t>((std::min)(last, (beyond + straight - 1) / straight))];
-        const detail::FlatAreaPoint<S> point(&points_[place(i, j)], cols_ + 2);
-        ++curve.points;
-        if (is_finite(point.flux_mm) && !point.is_steep) {
-          curve.area_mm2 = curve.area_mm2 + point.area_mm2;
-          curve.flux_mm = curve.flux_mm + point.flux_mm;
-        } else {
-          ++curve.unseen;
-        }
+        const std::size_t at = place(i, j);
+        const Index beyond = (std::max)(Index(0), distances_[at] - margin_);
+        const Index curve = (std::min)(last, (beyond + straight - 1) / straight);
+        curves_[static_cast<std::size_t>(curve)].add(&points_[at], cols_ + 2);
       }
     }
     Curve within;
     for (Curve& curve : curves_) {
-      const Index seen = curve.points - curve.unseen;
-      const S fill =
-          seen > 0 ? S(static_cast<double>(curve.points)) / S(static_cast<double>(seen)) : S(1);
-      within.area_mm2 = within.area_mm2 + fill * curve.area_mm2;
-      within.flux_mm = within.flux_mm + fill * curve.flux_mm;
-      within.points += curve.points;
-      within.unseen += curve.unseen;
+      within.add(curve);
       curve = within;
     }
   }

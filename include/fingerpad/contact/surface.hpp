@@ -5,7 +5,7 @@
 // depth map there is the object's own surface. Source: Ito, Kim, Obinata, "Shape sensing by
 // vision-based tactile sensor for dexterous handling of robot hands" (slides), which name shape and
 // irregularity but give no equations. Here a quadric is fitted. Its frame has the origin at the
-// centroid of the contact, w along the normal of the best plane, and u and v in that plane:
+// centroid of the contact, w along the normal of the plane of least squares, and u and v in it:
 //
 //   w = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 + g w^2
 //
@@ -54,48 +54,11 @@ struct [[nodiscard]] SurfaceResult {
 
 namespace detail {
 
-/// The place of a patch: its centroid and the axes u, v, w of its best plane, w toward the object.
-struct PatchFrame {
-  Index pixels = 0;
-  Point3<double> center = {0, 0, 0};
-  std::array<Point3<double>, 3> axes = {};
-  bool is_line = true;  ///< of pixels: thinner than a thousandth of its length
-
-  /// `for_each_point` visits the points of a patch and the pixels that see them.
-  template <class Points>
-  explicit PatchFrame(const Points& for_each_point) {
-    std::array<double, 6> first = {};
-    ProductSums<double, 6> sums;  // of 1, x, y, z, row, col; the others relative to the first point
-    for_each_point([&](const Point3<double>& p, double row, double col) {
-      const std::array<double, 6> all = {0, p.x, p.y, p.z, row, col};
-      first = pixels++ == 0 ? all : first;  // digits are kept relative to it
-      sums.add({1, p.x - first[1], p.y - first[2], p.z - first[3], row - first[4], col - first[5]});
-    });
-    const double n = static_cast<double>(pixels);
-    const auto mean = [&](std::size_t a) { return sums(0, a) / n; };
-    const auto second = [&](std::size_t a, std::size_t b) {
-      return sums(a, b) / n - mean(a) * mean(b);
-    };
-    const double determinant = second(4, 4) * second(5, 5) - square(second(4, 5));
-    is_line = !(determinant > 1e-6 * square(second(4, 4) + second(5, 5)));
-    center = {first[1] + mean(1), first[2] + mean(2), first[3] + mean(3)};
-    SmallMatrix<double, 3> spread;
-    for (std::size_t a = 0; a < 3; ++a) {
-      spread[a] = {second(a + 1, 1), second(a + 1, 2), second(a + 1, 3)};
-    }
-    const auto [u, v, w] = eigenvectors(spread).vector;
-    const Point3<double> up = w.z < 0 ? -w : w;
-    axes = {u, cross(up, u), up};
-  }
-
-  Point3<double> inside(const Point3<double>& p) const {
-    const Point3<double> q = p - center;
-    return {dot(axes[0], q), dot(axes[1], q), dot(axes[2], q)};
-  }
-  Point3<double> outside(const Point3<double>& direction) const {
-    return direction.x * axes[0] + direction.y * axes[1] + direction.z * axes[2];
-  }
-};
+/// Two unit vectors that are normal to the unit vector `n`, toward +z, and to each other.
+inline std::array<Point3<double>, 2> tangents(const Point3<double>& n) {
+  const Point3<double> along_x = normalized(Point3<double>{n.z, 0, -n.x});
+  return {along_x, cross(n, along_x)};
+}
 
 /// The quadric of a patch in its own frame, by least squares: its coefficients c and g.
 struct QuadricFit {
@@ -138,38 +101,61 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
   if (!same_size(depth, mask)) {
     return result;
   }
+  using Point = Point3<double>;
   const auto for_each_point = [&, eye = cast<double>(camera)](const auto& visit) {
     for (Index i = 0; i < depth.rows(); ++i) {
       for (Index j = 0; j < depth.cols(); ++j) {
         if (is_contact(cell_t<Mask>(mask(i, j)))) {
-          const double row = static_cast<double>(i), col = static_cast<double>(j);
-          const auto p = point_at(eye, row, col, static_cast<double>(value(depth(i, j))));
+          const Point2<double> px = {static_cast<double>(j), static_cast<double>(i)};
+          const auto p = point_at(eye, px.y, px.x, static_cast<double>(value(depth(i, j))));
           if (is_depth(p.z)) {
-            visit(p, row, col);
+            visit(p, px);
           }
         }
       }
     }
   };
-  const detail::PatchFrame frame(for_each_point);
-  result.pixels = frame.pixels;
-  if (frame.pixels <= 6 || frame.is_line) {
+  // the frame: the centroid and the best plane; digits are kept relative to the first point
+  Point first = {0, 0, 0};
+  Point2<double> first_px = {0, 0};
+  detail::ProductSums<double, 3> pixels;  // of 1, row, column
+  detail::ProductSums<double, 4> points;  // of 1, x, y, z
+  for_each_point([&](const Point& p, const Point2<double>& px) {
+    if (result.pixels++ == 0) {
+      first = p;
+      first_px = px;
+    }
+    const Point q = p - first;
+    pixels.add({1, px.y - first_px.y, px.x - first_px.x});
+    points.add({1, q.x, q.y, q.z});
+  });
+  const bool is_line = !detail::NormalEquations<double, 3>(pixels.corner<3>()).good;
+  if (result.pixels <= 6 || is_line) {
     return result;
   }
+  const double count = static_cast<double>(result.pixels);
+  const Point center = first + Point{points(0, 1), points(0, 2), points(0, 3)} / count;
+  const auto plane =
+      detail::NormalEquations<double, 3>(points.corner<3>()).solve(points.column<3>(3));
+  const Point w = normalized(Point{-plane[1], -plane[2], 1});
+  const auto [u, v] = detail::tangents(w);
+  const auto outside = [&, u = u, v = v](const Point& d) { return d.x * u + d.y * v + d.z * w; };
+
   detail::ProductSums<double, 8> sums;
-  for_each_point([&](const Point3<double>& p, double, double) {
-    const auto [u, v, w] = frame.inside(p);
-    sums.add({1, u, v, u * u, u * v, v * v, w, w * w});
+  for_each_point([&, u = u, v = v](const Point& p, const Point2<double>&) {
+    const Point q = p - center;
+    const double x = dot(u, q), y = dot(v, q), z = dot(w, q);
+    sums.add({1, x, y, x * x, x * y, y * y, z, z * z});
   });
   const detail::QuadricFit fit(sums);
 
   // at the height above the centroid, the curvature of F = w - c - g w^2 = 0 along a unit tangent t
   // is t^T (Hessian of -F) t / |grad F|
   const double height = 2 * fit.c[0] / (1 + std::sqrt((std::max)(1 - 4 * fit.g * fit.c[0], 0.0)));
-  const Point3<double> gradient = {-fit.c[1], -fit.c[2], 1 - 2 * fit.g * height};
-  const Point3<double> n = normalized(gradient);
-  const Point3<double> s = normalized(Point3<double>{n.z, 0, -n.x}), t = cross(n, s);
-  const auto bend = [&](const Point3<double>& a, const Point3<double>& b) {
+  const Point gradient = {-fit.c[1], -fit.c[2], 1 - 2 * fit.g * height};
+  const Point n = normalized(gradient);
+  const auto [s, t] = detail::tangents(n);
+  const auto bend = [&](const Point& a, const Point& b) {
     return (2 * fit.c[3] * a.x * b.x + fit.c[4] * (a.x * b.y + a.y * b.x) +
             2 * fit.c[5] * a.y * b.y + 2 * fit.g * a.z * b.z) /
            norm(gradient);
@@ -177,33 +163,32 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
   const double mean = (bend(s, s) + bend(t, t)) / 2, half = (bend(s, s) - bend(t, t)) / 2;
   const double radius = std::hypot(half, bend(s, t)), angle = std::atan2(bend(s, t), half) / 2;
   std::array<double, 2> k = {mean + radius, mean - radius};
-  std::array<Point3<double>, 2> along = {std::cos(angle) * s + std::sin(angle) * t,
-                                         std::cos(angle) * t - std::sin(angle) * s};
+  std::array<Point, 2> along = {std::cos(angle) * s + std::sin(angle) * t,
+                                std::cos(angle) * t - std::sin(angle) * s};
   if (std::abs(k[0]) < std::abs(k[1])) {
     std::swap(k[0], k[1]);
     std::swap(along[0], along[1]);
   }
-  const Point3<double> normal = frame.outside(n), point = frame.center + height * frame.axes[2];
+  const Point normal = outside(n), point = center + height * w;
   if (!fit.equations.good || !(normal.z > 0) || !is_finite(point) || !is_finite(k[0]) ||
       !is_finite(k[1])) {
     return result;
   }
-  const double pixels = static_cast<double>(frame.pixels), variance = fit.sum_sq / (pixels - 6);
-  const auto sd = [&](const Point3<double>& d) {
+  const auto sd = [&](const Point& d) {
     const double by_c =
         fit.equations.variance({0, 0, 0, 2 * d.x * d.x, 2 * d.x * d.y, 2 * d.y * d.y});
-    return std::sqrt((std::max)(variance * by_c, 0.0));
+    return std::sqrt((std::max)(fit.sum_sq / (count - 6) * by_c, 0.0));
   };
-  return {.pixels = frame.pixels,
+  return {.pixels = result.pixels,
           .curvature_1_per_mm = k[0],
           .curvature_2_per_mm = k[1],
           .curvature_1_sd_per_mm = sd(along[0]),
           .curvature_2_sd_per_mm = sd(along[1]),
-          .direction_1 = frame.outside(along[0]),
-          .direction_2 = frame.outside(along[1]),
+          .direction_1 = outside(along[0]),
+          .direction_2 = outside(along[1]),
           .point_mm = point,
           .normal = normal,
-          .rms_mm = std::sqrt(fit.sum_sq / pixels)};
+          .rms_mm = std::sqrt(fit.sum_sq / count)};
 }
 
 }  // namespace v0

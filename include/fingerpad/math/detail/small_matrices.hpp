@@ -170,12 +170,12 @@ struct ProductSums {
 
   void add(const std::array<S, N>& term) {
     for (std::size_t a = 0; a < N; ++a) {
-      for (std::size_t b = a; b < N; ++b) {
+      for (std::size_t b = 0; b < N; ++b) {
         sum[a][b] = sum[a][b] + term[a] * term[b];
       }
     }
   }
-  S operator()(std::size_t a, std::size_t b) const { return a < b ? sum[a][b] : sum[b][a]; }
+  const S& operator()(std::size_t a, std::size_t b) const { return sum[a][b]; }
   template <std::size_t M>
   std::array<S, M> column(std::size_t b) const {
     std::array<S, M> all = zeros<S, M>();
