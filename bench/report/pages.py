@@ -122,8 +122,9 @@ How to read it. Times are medians over repetitions, with half the distance of th
 percentile; "ns per item" is the native time over the number of pixels, samples or frames of a call,
 and "times as fast" compares with the first row, both at the native flags. Errors are the
 **median / 99th percentile / worst** of everything that was compared, and of how many if not all have
-an answer. Errors "on scenes" are against finite-element membranes, which share no law with any
-method; all others are against synthetic truths that do: light by the model that is inverted, caps,
+an answer. Errors "on scenes" are against finite-element membranes. Their rubber is neo-Hookean or
+Mooney-Rivlin, as the pull at the rim supposes too; they share no other law with a method. All other
+errors are against truths made by the law of the method: light by the model that is inverted, caps,
 rigid motions, films. Where a method has the one kind, pictures and first tables show that. Memory is
 what a row's estimator, workspace, state and outputs take; allocations are those of one call. "over"
 columns give the native time over that of a yardstick in the same run: OpenCV's nearest primitive, or
