@@ -40,14 +40,13 @@ struct Errors {
 };
 
 template <class S, class Field>
-Errors errors_of(const Field& field, double noise_mm, int frames) {
+Errors errors_of(Field& field, double noise_mm, int frames) {
   Errors errors;
-  auto maps = field.maps();
   for (const test::TractionScene& s : test::traction_scenes()) {
     test::Gauss gauss(11);
     for (int k = 0; k < frames; ++k) {
-      const auto r = field(as<S>(noisy(s.dots, noise_mm, gauss)), s.contact,
-                           static_cast<S>(s.pressure_mpa), maps);
+      const auto r =
+          field(as<S>(noisy(s.dots, noise_mm, gauss)), s.contact, static_cast<S>(s.pressure_mpa));
       Errors::add(r.force_n, s.force_n, s.largest_force_n(), errors.force);
       if (s.largest_moment_n_mm() > 0) {
         Errors::add(r.moment_n_mm, s.moment_n_mm, s.largest_moment_n_mm(), errors.moment);
@@ -55,7 +54,7 @@ Errors errors_of(const Field& field, double noise_mm, int frames) {
       for (Index i = 0; i < 21; ++i) {
         for (Index j = 0; j < 21; ++j) {
           if (s.inside_contact(i, j, 1)) {
-            const auto found = static_cast<double>(maps.pressure_mpa()(i, j));
+            const auto found = static_cast<double>(field.pressure_mpa()(i, j));
             errors.pressure.push_back((found - s.contact_pressure_mpa(i, j)) / s.pressure_mpa);
           }
         }
@@ -67,24 +66,19 @@ Errors errors_of(const Field& field, double noise_mm, int frames) {
 
 template <class S = double>
 void add_frame(const std::string& name, const TractionOptions<S>& options = {}) {
-  struct Running {
-    TractionField<S> field;
-    typename TractionField<S>::Maps maps = field.maps();
-  };
   const test::TractionScene& scene = test::traction_scenes()[1];
   const auto dots = as<S>(scene.dots);
   const test::Dots stress_free = test::stress_free_dots();
   const bench::Memory memory;
-  const auto d = std::make_shared<Running>(Running{TractionField<S>(stress_free, options)});
+  const auto d = std::make_shared<TractionField<S>>(stress_free, options);
   bench::add(
       "frame of 21x21 dots/" + name, 1, memory.bytes(),
       [d, dots, &scene] {
-        benchmark::DoNotOptimize(
-            d->field(dots, scene.contact, static_cast<S>(scene.pressure_mpa), d->maps));
+        benchmark::DoNotOptimize((*d)(dots, scene.contact, static_cast<S>(scene.pressure_mpa)));
       },
       [d, errors = std::array<Errors, 2>()](auto& counters) mutable {
         if (errors[0].force.empty()) {
-          errors = {errors_of<S>(d->field, 0, 1), errors_of<S>(d->field, 0.02, 40)};
+          errors = {errors_of<S>(*d, 0, 1), errors_of<S>(*d, 0.02, 40)};
         }
         errors[0].note(counters, "");
         errors[1].note(counters, ", 20 um noise");

@@ -257,8 +257,7 @@ std::vector<Kind> of_stick_in_the_image() {
 }
 
 std::vector<Kind> of_traction() {
-  static const TractionField field(test::stress_free_dots());
-  static auto maps = field.maps();
+  static TractionField field(test::stress_free_dots());
   static const auto drag = test::traction_scene("drag");
   static const auto usual = made<test::Dots>([](int, test::Random&) { return drag.dots; });
   static const auto shaken = made<test::Dots>([](int, test::Random& random) {
@@ -270,7 +269,7 @@ std::vector<Kind> of_traction() {
     return dots;
   });
   const auto call = [](const std::vector<test::Dots>& dots) {
-    return [&](int k) { (void)field(dots[variant(k)], drag.contact, drag.pressure_mpa, maps); };
+    return [&](int k) { (void)field(dots[variant(k)], drag.contact, drag.pressure_mpa); };
   };
   return {{"a dragged plate", call(usual)}, {"dots shaken, a tenth missing", call(shaken)}};
 }

@@ -11,14 +11,14 @@
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
+using test::Corners;
 using test::Digits50;
-using test::Triangle;
 
 namespace {
 
 template <class S, class From>
-Triangle<S> as(const Triangle<From>& x) {
-  Triangle<S> out;
+Corners<S> as(const Corners<From>& x) {
+  Corners<S> out;
   for (std::size_t k = 0; k < 3; ++k) {
     out[k] = {S(x[k].x), S(x[k].y), S(x[k].z)};
   }
@@ -38,28 +38,26 @@ Loss loss_of(const test::TractionScene& s) {
   // rounding of the inputs to S is no error of the method: both start from the numbers of S
   const auto stored_free = test::as<S>(test::stress_free_dots());
   const auto stored = test::as<S>(s.dots);
-  const TractionField<S> field(stored_free, {.mu_t_n_per_mm = S(0.5)});
-  const TractionField<Digits50> exact(stored_free, {.mu_t_n_per_mm = Digits50(0.5)});
-  auto maps = field.maps();
-  auto exact_maps = exact.maps();
+  TractionField<S> field(stored_free, {.mu_t_n_per_mm = S(0.5)});
+  TractionField<Digits50> exact(stored_free, {.mu_t_n_per_mm = Digits50(0.5)});
   const S p = S(s.pressure_mpa);
-  const auto r = field(stored, s.contact, p, maps);
-  const auto e = exact(stored, s.contact, Digits50(p), exact_maps);
+  const auto r = field(stored, s.contact, p);
+  const auto e = exact(stored, s.contact, Digits50(p));
   REQUIRE(r.ok());
   REQUIRE(e.ok());
-  REQUIRE(r.dots_loaded == e.dots_loaded);
+  REQUIRE(r.free_dots == e.free_dots);
   Loss loss;
   const auto off = [](const S& a, const Digits50& b) {
     return std::abs(static_cast<double>(Digits50(a) - b));
   };
   for (Index i = 0; i < 21; ++i) {
     for (Index j = 0; j < 21; ++j) {
-      if (is_finite(maps.pressure_mpa()(i, j))) {
-        const auto& a = maps.load_mpa()(i, j);
-        const auto& b = exact_maps.load_mpa()(i, j);
+      if (is_finite(field.pressure_mpa()(i, j))) {
+        const auto& a = field.load_mpa()(i, j);
+        const auto& b = exact.load_mpa()(i, j);
         loss.load = (std::max)({loss.load, off(a.x, b.x), off(a.y, b.y), off(a.z, b.z)});
-        loss.pressure = (std::max)(loss.pressure,
-                                   off(maps.pressure_mpa()(i, j), exact_maps.pressure_mpa()(i, j)));
+        loss.pressure =
+            (std::max)(loss.pressure, off(field.pressure_mpa()(i, j), exact.pressure_mpa()(i, j)));
       }
     }
   }
@@ -77,8 +75,8 @@ TEST_CASE("membrane triangle with fifty digits", "[traction][hard]") {
   test::Gauss gauss(4);
   double worst = 0;
   for (int k = 0; k < 200; ++k) {
-    Triangle<double> free = {Point3<double>{0, 0, 0}, {1.5, 0, 0}, {0.3, 1.4, 0}};
-    Triangle<double> now = free;
+    Corners<double> free = {Point3<double>{0, 0, 0}, {1.5, 0, 0}, {0.3, 1.4, 0}};
+    Corners<double> now = free;
     for (std::size_t c = 0; c < 3; ++c) {
       free[c] = free[c] + 0.1 * Point3<double>{gauss(), gauss(), gauss()};
       now[c] = now[c] + 0.2 * Point3<double>{gauss(), gauss(), gauss()};

@@ -129,8 +129,7 @@ void tell_dots(Results& tell) {
   const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
   ObjectMotion<> motion(9, 9);
   ContactShift<> shift(view(free));
-  static const TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
-  auto maps = field.maps();
+  static TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
   static const SpatialStickRatio<> stick(9, 9);
   auto stick_state = stick.start();
   std::vector<DotState> states(81);
@@ -140,7 +139,7 @@ void tell_dots(Results& tell) {
     const auto shifted = shift(view(now), contact);
     const auto ratio =
         stick(view(now), contact, StridedView<DotState>(states.data(), 9, 9, 9), stick_state);
-    const auto load = field(view(now), contact, 0.01, maps);
+    const auto load = field(view(now), contact, 0.01);
     if (frame == 7) {
       tell("motion ok", moved.ok() ? 1 : 0);
       tell("shift x mm", shifted.displacement.x);

@@ -3,6 +3,7 @@
 // Properties for every membrane, every load and every grid.
 #include "fingerpad/force/traction.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -59,13 +60,12 @@ struct Pad {
 
 struct Seen {
   TractionResult<double> result;
-  TractionField<>::Maps maps;
+  TractionField<> maps;
 };
 
 Seen look_with(const Pad& pad, const TractionOptions<>& options) {
-  const TractionField field(pad.free, options);
-  Seen seen{{}, field.maps()};
-  seen.result = field(pad.dots, pad.contact, pad.pressure, seen.maps);
+  Seen seen{{}, TractionField<>(pad.free, options)};
+  seen.result = seen.maps(pad.dots, pad.contact, pad.pressure);
   return seen;
 }
 Seen look(const Pad& pad, TractionOptions<> options = {}) {
@@ -113,38 +113,24 @@ const auto same_place = [](Index i, Index j) { return DotIndex{i, j}; };
 
 /// Asserts that all known values are finite and that the counts are those of the maps.
 template <class S = double, class Field>
-void assert_valid(const Pad& pad, const Field& field) {
-  auto maps = field.maps();
-  const auto r = field(pad.dots, pad.contact, static_cast<S>(pad.pressure), maps);
+void assert_valid(const Pad& pad, Field field) {
+  const auto r = field(pad.dots, pad.contact, static_cast<S>(pad.pressure));
   RC_ASSERT((r.status != TractionStatus::refused));
   const bool has_force = r.has_force();
   RC_ASSERT(has_force == is_finite(r.mu_t_n_per_mm));
-  RC_ASSERT(!has_force || r.dots_loaded > 0);
   RC_ASSERT(is_finite(r.force_n) == has_force);
   RC_ASSERT(is_finite(r.moment_n_mm) == has_force);
-  RC_ASSERT(is_finite(r.free_load_rms_mpa) == (has_force && r.balance.dots > 0));
-  Index loaded = 0, slack = 0;
+  RC_ASSERT(is_finite(r.free_load_rms_mpa) == (has_force && r.free_dots > 0));
+  Index loaded = 0;
   for (Index i = 0; i < pad.dots.rows(); ++i) {
     for (Index j = 0; j < pad.dots.cols(); ++j) {
-      const bool known = is_finite(maps.pressure_mpa()(i, j));
-      RC_ASSERT(is_finite(maps.load_mpa()(i, j)) == known);
-      RC_ASSERT(is_finite(maps.shear_mpa()(i, j)) == known);
+      const bool known = is_finite(field.pressure_mpa()(i, j));
+      RC_ASSERT(is_finite(field.load_mpa()(i, j)) == known);
+      RC_ASSERT(is_finite(field.shear_mpa()(i, j)) == known);
       loaded += known ? 1 : 0;
     }
   }
-  RC_ASSERT(loaded == (has_force ? r.dots_loaded : 0));
-  for (Index i = 0; i + 1 < pad.dots.rows(); ++i) {
-    for (Index j = 0; j + 1 < pad.dots.cols(); ++j) {
-      const auto& t = maps.tension_n_per_mm()(i, j);
-      const bool known = is_finite(t.larger);
-      RC_ASSERT(is_finite(t.smaller) == known);
-      RC_ASSERT(is_finite(t.direction) == known);
-      const auto larger = static_cast<double>(t.larger), smaller = static_cast<double>(t.smaller);
-      RC_ASSERT(!known || larger >= smaller - 1e-5 * std::abs(smaller));
-      slack += known && t.smaller < 0 ? 1 : 0;
-    }
-  }
-  RC_ASSERT(slack == r.cells_slack);
+  RC_ASSERT((loaded > 0) == has_force);
 }
 
 }  // namespace
@@ -217,7 +203,6 @@ TEST_CASE("traction does not care how rows and columns run", "[traction][law]") 
     RC_ASSERT(distance(after.result.force_n, before.result.force_n) <= 1000 * small);
     RC_ASSERT(distance(after.result.moment_n_mm, before.result.moment_n_mm) <= 1e5 * small);
     RC_ASSERT(after.result.status == before.result.status);
-    RC_ASSERT(after.result.cells_slack == before.result.cells_slack);
   });
 }
 
@@ -291,7 +276,7 @@ TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
 TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") {
   rc::prop("wherever the dots inside lie: action is reaction", [] {
     const Pad pad = Pad::any();
-    const TractionOptions<> abrupt{.ring_dots = 1, .fade_dots = 0, .largest_stretch = 1000};
+    const TractionOptions<> abrupt{.ring_dots = 1, .fade_dots = 0};
     const Seen before = look(pad, abrupt);
     RC_PRE(before.result.has_force() && before.result.dots_left_out == 0);
     Pad other = pad;
@@ -306,7 +291,7 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
     }
     RC_PRE(moved > 0);
     const Seen after = look(other, abrupt);
-    RC_PRE(after.result.cells_refused == 0 && after.result.dots_left_out == 0);
+    RC_PRE(after.result.dots_left_out == 0);
     const double small = 1e-9 * typical_load(pad);
     RC_ASSERT(distance(after.result.force_n, before.result.force_n) <= small);
     RC_ASSERT(distance(after.result.moment_n_mm, before.result.moment_n_mm) <= 100 * small);
@@ -325,23 +310,24 @@ TEST_CASE("the sum of the loads over all dots, from the border alone", "[tractio
       flag = 1;
     }
     const Seen seen = look(pad, {.ring_dots = 0, .fade_dots = 0});
-    RC_PRE(seen.result.cells_refused == 0);
+    RC_PRE(seen.result.dots_left_out == 2 * (pad.dots.rows() + pad.dots.cols()) - 4);
     const Index rows = pad.dots.rows(), cols = pad.dots.cols();
     Vector pull{0, 0, 0}, area{0, 0, 0};
     for (Index i = 0; i + 1 < rows; ++i) {
       for (Index j = 0; j + 1 < cols; ++j) {
         const bool at_border = i == 0 || j == 0 || i + 2 == rows || j + 2 == cols;
         const auto corners = [&](const Dots& d) {
-          return detail::traction::Corners<double>{d(i, j), d(i, j + 1), d(i + 1, j + 1),
-                                                   d(i + 1, j)};
+          return std::array<Vector, 4>{d(i, j), d(i, j + 1), d(i + 1, j + 1), d(i + 1, j)};
         };
         const auto x = corners(pad.dots);
         const auto f = corners(pad.free);
         const Index row[4] = {i, i, i + 1, i + 1}, col[4] = {j, j + 1, j + 1, j};
         for (std::size_t k = 0; at_border && k < 4; ++k) {
-          const auto of = test::corner_forces(test::stress_free(detail::traction::ear(f, k)),
-                                              detail::traction::ear(x, k));
-          const auto doubled = test::twice_area_vector(detail::traction::ear(x, k));
+          const auto ear = [&](const std::array<Vector, 4>& d) {
+            return test::Corners<double>{d[(k + 3) % 4], d[k], d[(k + 1) % 4]};
+          };
+          const auto of = test::corner_forces(test::stress_free(ear(f)), ear(x));
+          const auto doubled = test::twice_area_vector(ear(x));
           for (std::size_t c = 0; c < 3; ++c) {
             const std::size_t at = (k + 3 + c) % 4;
             if (row[at] == 0 || col[at] == 0 || row[at] + 1 == rows || col[at] + 1 == cols) {
@@ -416,10 +402,8 @@ TEST_CASE("traction of anything at all", "[traction][law][fuzz]") {
     }
     pad.pressure = test::whole(0, 4) == 0 ? odd[test::whole(0, 9)] : pad.pressure;
     const bool given = test::whole(0, 1) == 0;
-    const auto options = [&, ring = test::whole(0, 5), fade = test::whole(0, 20),
-                          most = test::log_uniform(1.5, 1000)]<class S>(S) {
-      TractionOptions<S> o{
-          .min_free_dots = 1, .ring_dots = ring, .fade_dots = fade, .largest_stretch = most};
+    const auto options = [&, ring = test::whole(0, 5), fade = test::whole(0, 20)]<class S>(S) {
+      TractionOptions<S> o{.min_free_dots = 1, .ring_dots = ring, .fade_dots = fade};
       if (given) {
         o.mu_t_n_per_mm = static_cast<S>(pad.mu_t);
       }

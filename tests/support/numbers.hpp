@@ -31,6 +31,7 @@ struct Dual {
   friend Dual operator/(const Dual& a, const Dual& b) {
     return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v};
   }
+  Dual& operator+=(const Dual& b) { return *this = *this + b; }
   friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
   friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }

@@ -131,21 +131,16 @@ struct TractionError {
   int frames = 0;             ///< with a force of all dots
 };
 
-template <class Field>
-TractionError traction_error(const Field& field,
+template <class S>
+TractionError traction_error(fingerpad::TractionField<S>& field,
                              const TractionScene& s,
                              double noise_mm = 0,
                              int frames = 1) {
   TractionError e;
-  auto maps = field.maps();
   Gauss gauss(11);
   double dots = 0, sum_sq = 0;
   for (int k = 0; k < frames; ++k) {
-    const auto r =
-        field(noisy(s.dots, noise_mm, gauss), s.contact,
-              static_cast<std::remove_cvref_t<decltype(field.maps().pressure_mpa()(0, 0))>>(
-                  s.pressure_mpa),
-              maps);
+    const auto r = field(noisy(s.dots, noise_mm, gauss), s.contact, S(s.pressure_mpa));
     e.frames += r.ok();
     const auto f = [](auto x) { return static_cast<double>(x); };
     const std::array<double, 6> off = {
@@ -165,7 +160,7 @@ TractionError traction_error(const Field& field,
           continue;
         }
         const double error =
-            (f(maps.pressure_mpa()(i, j)) - s.contact_pressure_mpa(i, j)) / s.pressure_mpa;
+            (f(field.pressure_mpa()(i, j)) - s.contact_pressure_mpa(i, j)) / s.pressure_mpa;
         sum_sq += error * error;
         mean += error;
         count += 1;

@@ -270,11 +270,9 @@ inline std::vector<Effect> traction_effects() {
                .on = "`TractionOptions::fade_dots` 3",
                .off = "0"};
   const auto free = test::stress_free_dots();
-  const TractionField calibrated(free, {.mu_t_n_per_mm = 0.5});
-  const TractionField balanced(free);
-  const TractionField abrupt(free, {.mu_t_n_per_mm = 0.5, .fade_dots = 0});
-  auto maps = calibrated.maps();
-  auto other = balanced.maps();
+  TractionField calibrated(free, {.mu_t_n_per_mm = 0.5});
+  TractionField balanced(free);
+  TractionField abrupt(free, {.mu_t_n_per_mm = 0.5, .fade_dots = 0});
   const auto note = [&](const test::TractionScene& s, Scene where, double noise_mm, double lost) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       test::Gauss gauss(seed);
@@ -285,13 +283,13 @@ inline std::vector<Effect> traction_effects() {
           p = fingerpad::detail::missing_point<double>();
         }
       }
-      const auto off = [&](const auto& field, auto& work) {
-        return norm(field(seen, s.contact, s.pressure_mpa, work).force_n - s.force_n);
+      const auto off = [&](auto& field) {
+        return norm(field(seen, s.contact, s.pressure_mpa).force_n - s.force_n);
       };
-      force.with_in(where).add(off(calibrated, maps));
-      force.without_in(where).add(off(balanced, other));
-      faded.with_in(where).add(off(calibrated, maps));
-      faded.without_in(where).add(off(abrupt, other));
+      force.with_in(where).add(off(calibrated));
+      force.without_in(where).add(off(balanced));
+      faded.with_in(where).add(off(calibrated));
+      faded.without_in(where).add(off(abrupt));
     }
   };
   for (const test::TractionScene& s : test::traction_scenes()) {
@@ -302,11 +300,11 @@ inline std::vector<Effect> traction_effects() {
     }
   }
   const test::TractionScene drag = test::traction_scene("drag");
-  const auto run = [&](const auto& field, auto& work) {
-    return [&] { (void)field(drag.dots, drag.contact, drag.pressure_mpa, work); };
+  const auto run = [&](auto& field) {
+    return [&] { (void)field(drag.dots, drag.contact, drag.pressure_mpa); };
   };
-  force.cost_us = cost_us(run(calibrated, maps), run(balanced, other));
-  faded.cost_us = cost_us(run(calibrated, maps), run(abrupt, other));
+  force.cost_us = cost_us(run(calibrated), run(balanced));
+  faded.cost_us = cost_us(run(calibrated), run(abrupt));
   return {force, faded};
 }
 

@@ -154,7 +154,7 @@ inline Row march_from_rim() {
 
 /// Twice the area of a triangle from its edges, by Heron's formula.
 template <class S>
-S twice_area_of_edges(const fingerpad::detail::traction::Triangle<S>& x) {
+S twice_area_of_edges(const std::array<Point3<S>, 3>& x) {
   using std::sqrt;
   std::array<S, 3> edge;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -170,11 +170,11 @@ inline Row thin_triangle() {
              "half the cross product", []<class S>(S) {
                Forms f;
                for (const double high : sweep(1e-9, 1, 2)) {
-                 const fingerpad::detail::traction::Triangle<S> x = {
+                 const std::array<Point3<S>, 3> x = {
                      Point3<S>{S(0), S(0), S(0)}, {S(1.5), S(0), S(0)}, {S(0.7), S(high), S(0)}};
                  const Digits50 exact = Digits50(x[1].x) * Digits50(x[2].y);
                  f.naive.add_relative(twice_area_of_edges(x), exact);
-                 const auto area = fingerpad::detail::traction::twice_area_vector(x);
+                 const auto area = fingerpad::detail::traction::twice_area(x[0], x[1], x[2]);
                  f.stable.add_relative(std::sqrt(squared_norm(area)), exact);
                }
                return f;

@@ -8,32 +8,22 @@
 #include "fingerpad/force/traction.hpp"
 
 namespace replay {
-namespace {
-
-struct Chain {
-  fingerpad::TractionField<> field;
-  fingerpad::TractionField<>::Maps maps = field.maps();
-};
-
-}  // namespace
-
 TractionStep make_traction_step(const Recording& recording) {
   if (!recording.stress_free_dots) {
     return {};
   }
   // Shared, so that copies of the std::function do not copy the maps.
-  const auto chain =
-      std::make_shared<Chain>(Chain{fingerpad::TractionField<>(*recording.stress_free_dots)});
-  return [chain](const FrameDots& dots, double pressure_mpa) {
+  const auto field = std::make_shared<fingerpad::TractionField<>>(*recording.stress_free_dots);
+  return [field](const FrameDots& dots, double pressure_mpa) {
     TractionFrame frame;
-    frame.result = chain->field(dots.dots_mm, dots.in_contact, pressure_mpa, chain->maps);
+    frame.result = (*field)(dots.dots_mm, dots.in_contact, pressure_mpa);
     if (frame.result.status != fingerpad::TractionStatus::refused) {
       frame.pressure_mpa.create(dots.dots_px.size());
       frame.shear_mpa.create(dots.dots_px.size());
       for (int i = 0; i < dots.dots_px.rows; ++i) {
         for (int j = 0; j < dots.dots_px.cols; ++j) {
-          const auto& shear = chain->maps.shear_mpa()(i, j);
-          frame.pressure_mpa(i, j) = chain->maps.pressure_mpa()(i, j);
+          const auto& shear = field->shear_mpa()(i, j);
+          frame.pressure_mpa(i, j) = field->pressure_mpa()(i, j);
           frame.shear_mpa(i, j) = {shear.x, shear.y, shear.z};
         }
       }
