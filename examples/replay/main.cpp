@@ -69,8 +69,8 @@ void add_options(CLI::App& app, replay::Options& options, std::string& frames, b
       "also write depth/NNNNNN.tiff (32-bit float, mm, NaN where invalid) and contact/NNNNNN.png "
       "(255 in contact, else 0)");
   app.add_option("--smoothing", options.smoothing_px,
-                 "width of the smoothing window, odd, 3 to 109, or 1: none; default: smoothing_px "
-                 "of sensor.json, else 1")
+                 "width of the smoothing window, odd, 3 to 109 times the width of a sample, or 1: "
+                 "none; default: smoothing_px of sensor.json, else 1")
       ->option_text("PX");
   app.add_option("--frames", frames,
                  "process frames A to B-1 only, counted from 0; A or B may be omitted")

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -43,14 +44,15 @@ Means<Mean> means_of(const Frame<Pixel>& frame,
   const auto counts = [&](Pixel x) {
     return static_cast<double>(x) > limits.dark && static_cast<double>(x) < limits.saturated;
   };
-  const auto load = [&](Index row, Pixel* red, Pixel* green, std::uint8_t* valid) {
+  using Number = std::conditional_t<sizeof(Pixel) == 8, std::uint64_t, std::uint32_t>;
+  const auto load = [&](Index row, Number* red, Number* green, std::uint32_t* valid) {
     for (Index j = 0; j < cols; ++j) {
       valid[j] = inside(row, j) != 0 && counts(frame.red(row, j)) && counts(frame.green(row, j));
-      red[j] = valid[j] != 0 ? frame.red(row, j) : Pixel(0);
-      green[j] = valid[j] != 0 ? frame.green(row, j) : Pixel(0);
+      red[j] = valid[j] != 0 ? static_cast<Number>(frame.red(row, j)) : Number(0);
+      green[j] = valid[j] != 0 ? static_cast<Number>(frame.green(row, j)) : Number(0);
     }
   };
-  detail::WindowMeans<Pixel, Mean> sums(rows, cols, {window, window + 2});
+  detail::WindowMeans<Number, Mean> sums(rows, cols, {window, window + 2});
   const auto blocks = static_cast<std::size_t>((cols + 63) / 64 * 64);
   std::vector<Mean> red(blocks), green(blocks), outer(blocks);
   sums.start(first, load);
@@ -74,42 +76,43 @@ TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
   CHECK(means.red(0, 0) == 255.0f);
 }
 
-TEST_CASE("the largest window of the brightest 16-bit pixels", "[window]") {
-  const Frame<std::uint16_t> frame(256, 270, 65535);
+TEST_CASE("the largest window of the largest 16-bit numbers", "[window]") {
+  const int level = GENERATE(-32768, 32768);
+  Frame<std::int32_t> frame(256, 270, level);
+  frame.green = Image<std::int32_t>(256, 270, 65535);
   const Image<std::uint8_t> all(256, 270, 1);
-  const auto means = means_of(frame, all, 253, {0, 65536});
-  // 65025 * 65535 fits into 32 bits and is rounded to float once, times a rounded reciprocal
-  CHECK(means.outer_red(127, 140) == Approx(65535).epsilon(2e-7));
+  const auto means = means_of(frame, all, 253, {-40000, 70000});
+  // 65025 * 32768 fits into 31 bits and is rounded to float once, times a rounded reciprocal
+  CHECK(means.outer_red(127, 140) == Approx(level).epsilon(2e-7));
   CHECK(means.green(0, 269) == Approx(65535).epsilon(2e-7));
+  CHECK(means.green(127, 140) == Approx(65535).epsilon(2e-7));
 }
 
-TEMPLATE_TEST_CASE("whole numbers have exact sums, rounded as a box filter does",
-                   "[window]",
-                   std::uint8_t,
-                   std::uint16_t) {
+TEST_CASE("whole numbers have exact sums, rounded as a box filter does", "[window]") {
   rc::prop("in any band", [] {
-    using Pixel = TestType;
+    using Pixel = std::int32_t;
     const Index rows = test::whole(1, 30);
     const Index cols = test::whole(1, 150);
     test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
     Frame<Pixel> frame(rows, cols);
     Image<std::uint8_t> inside(rows, cols);
     const double share = test::uniform(0, 1);
-    constexpr Index top = (std::numeric_limits<Pixel>::max)();
+    const bool bytes = test::whole(0, 1) == 0;
+    const Index top = bytes ? 255 : 32768, lowest = bytes ? 0 : -32768;
     for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
-      frame.red.cells[k] = static_cast<Pixel>(random.whole(0, top));
-      frame.green.cells[k] = static_cast<Pixel>(random.whole(0, top));
+      frame.red.cells[k] = static_cast<Pixel>(random.whole(lowest, top));
+      frame.green.cells[k] = static_cast<Pixel>(random.whole(0, top - lowest));
       inside.cells[k] = random.uniform() < share ? 0 : 1;
     }
-    const double dark = static_cast<double>(test::whole(-1, top / 4)) + 0.5;
-    const double saturated = static_cast<double>(test::whole(top / 2, top + 1));
+    const double dark = static_cast<double>(test::whole(lowest - 1, top / 4)) + 0.5;
+    const double saturated = static_cast<double>(test::whole(top / 2, 2 * top));
     const int window = 3 + 2 * static_cast<int>(test::whole(0, 20));
     const Index first = test::whole(0, rows - 1);
     const auto means = means_of(frame, inside, window, {dark, saturated}, first);
     for (Index i = first; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
         for (const Index r : {Index(window / 2), Index(window / 2 + 1)}) {
-          std::uint32_t red = 0, green = 0, count = 0;
+          std::int32_t red = 0, green = 0, count = 0;
           for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
             for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
               const auto good = [&](Pixel x) { return x > dark && x < saturated; };
@@ -120,7 +123,7 @@ TEMPLATE_TEST_CASE("whole numbers have exact sums, rounded as a box filter does"
               }
             }
           }
-          const auto mean = [&](std::uint32_t sum) {
+          const auto mean = [&](std::int32_t sum) {
             return count == 0 ? std::numeric_limits<float>::quiet_NaN()
                               : float(sum) * (1.0f / float(count));
           };
@@ -166,7 +169,7 @@ TEMPLATE_TEST_CASE("rounding does not pile up down a long image", "[window]", fl
 }
 
 TEST_CASE("windows and images that cannot be are refused", "[window]") {
-  using Sums = detail::WindowMeans<std::uint8_t>;
+  using Sums = detail::WindowMeans<std::uint32_t>;
   CHECK_NOTHROW(Sums(1, 1, {3, 255}));
   CHECK_THROWS_AS(Sums(0, 1, {3, 5}), parameter_error);
   CHECK_THROWS_AS(Sums(1, 0, {3, 5}), parameter_error);

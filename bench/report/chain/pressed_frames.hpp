@@ -99,7 +99,8 @@ class PressedFrames {
                                   pad_.cols};
     f.free_dots_mm = free_dots_.view();
     f.rim_mm = rim_.view();
-    // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px at most
+    // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px is the
+    // most without samples
     const double scale = static_cast<double>(pad_.cols) / 640;
     f.smoothing_px = (std::min)(2 * static_cast<int>(14 * scale) + 1, 109);
     f.contact.ring.radius_px = 25 * scale;

@@ -28,11 +28,11 @@ inline Row long_image() {
                    frame.green(i, j) = S(100 * wave);
                  }
                }
-               const auto load = [&](fingerpad::Index row, std::int64_t* red, std::int64_t* green,
-                                     std::uint8_t* counts) {
+               const auto load = [&](fingerpad::Index row, std::uint64_t* red, std::uint64_t* green,
+                                     std::uint32_t* counts) {
                  for (fingerpad::Index j = 0; j < cols; ++j) {
-                   red[j] = static_cast<std::int64_t>(frame.red(row, j) * S(0x1p38));
-                   green[j] = static_cast<std::int64_t>(frame.green(row, j) * S(0x1p38));
+                   red[j] = static_cast<std::uint64_t>(frame.red(row, j) * S(0x1p38));
+                   green[j] = static_cast<std::uint64_t>(frame.green(row, j) * S(0x1p38));
                    counts[j] = 1;
                  }
                };
@@ -42,7 +42,7 @@ inline Row long_image() {
                  }
                  return sum;
                };
-               fingerpad::detail::WindowMeans<std::int64_t, S> sums(rows, cols, {5, 7});
+               fingerpad::detail::WindowMeans<std::uint64_t, S> sums(rows, cols, {5, 7});
                sums.start(0, load);
                std::vector<S> red(64), green(64), outer(64);
                S running = S(0);

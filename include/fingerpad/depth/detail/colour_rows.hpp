@@ -98,6 +98,7 @@ class ColourRows {
              int step)
       : cols_(area.cols),
         kappa_(S(fluid.kappa)),
+        per_kappa_(1 / kappa_),
         rise_(padded(area.rows * area.cols), S(1)),
         scattered_(rise_.size()),
         per_g_(rise_.size()),
@@ -151,7 +152,7 @@ class ColourRows {
     using Element = element_t<cell_t<Red>>;
     const Index row = row_++;
     if (!wide_means_) {
-      std::uint8_t counts[block];
+      std::uint32_t counts[block];
       each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
         mark(r, g, per_g(row) + j, scale, counts);
         single(r, g, gain(row) + j, counts, scale, to_red + j, to_green + j);
@@ -180,9 +181,9 @@ class ColourRows {
   // residuals around the middle of their range, all others in 64 bits.
   template <class Cell>
   using element_t =
-      std::conditional_t<is_short<Cell> && std::same_as<S, float>, std::uint16_t, std::int64_t>;
+      std::conditional_t<is_short<Cell> && std::same_as<S, float>, std::uint32_t, std::uint64_t>;
   template <class Element, std::int64_t for_16_bits, std::int64_t for_64_bits>
-  static constexpr S either = S(static_cast<double>(sizeof(Element) == 2 ? for_16_bits
+  static constexpr S either = S(static_cast<double>(sizeof(Element) == 4 ? for_16_bits
                                                                          : for_64_bits));
   template <class E>
   static constexpr S residual_steps = either<E, 128, std::int64_t(1) << 38>;  ///< in a grey level
@@ -197,7 +198,7 @@ class ColourRows {
 
   template <class Element>
   auto& means() {
-    if constexpr (sizeof(Element) == 2) {
+    if constexpr (sizeof(Element) == 4) {
       return *short_means_;
     } else {
       return *wide_means_;
@@ -224,7 +225,7 @@ class ColourRows {
   /// The row source of the window means: residuals and green of a row, and which pixels count.
   template <class Red, class Green>
   auto source(const Red& red, const Green& green, const GreyScale& scale) const {
-    return [&, this](Index row, auto* residual, auto* to_green, std::uint8_t* counts) {
+    return [&, this](Index row, auto* residual, auto* to_green, std::uint32_t* counts) {
       each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
         mark(r, g, per_g(row) + j, scale, counts + j);
         store(row, j, r, g, counts + j, scale, residual + j, to_green + j);
@@ -239,7 +240,7 @@ class ColourRows {
                                      const Pixel* green,
                                      const S* per_g,
                                      const GreyScale& scale,
-                                     std::uint8_t* __restrict counts) {
+                                     std::uint32_t* __restrict counts) {
     using Number = std::conditional_t<is_short<Pixel>, std::int32_t, S>;
     const auto limit = [](double whole, double any) {
       return is_short<Pixel> ? Number((std::clamp)(whole, -1.0, 65536.0)) : Number(any);
@@ -248,8 +249,8 @@ class ColourRows {
     const Number saturated = limit(std::ceil(scale.saturated), scale.saturated);
     for (Index i = 0; i < block; ++i) {
       const Number r = Number(red[i]), g = Number(green[i]);
-      counts[i] = std::uint8_t(int(per_g[i] > S(0)) & int(r > dark) & int(r < saturated) &
-                               int(g > dark) & int(g < saturated));
+      counts[i] = std::uint32_t(int(per_g[i] > S(0)) & int(r > dark) & int(r < saturated) &
+                                int(g > dark) & int(g < saturated));
     }
   }
 
@@ -257,13 +258,13 @@ class ColourRows {
   [[gnu::noinline]] static void single(const Pixel* red,
                                        const Pixel* green,
                                        const S* gain,
-                                       const std::uint8_t* counts,
+                                       const std::uint32_t* counts,
                                        const GreyScale& scale,
                                        S* __restrict to_red,
                                        S* __restrict to_green) {
     const S level = S(1 / scale.units_per_level);
     for (Index i = 0; i < block; ++i) {
-      const S one = S(counts[i]) / S(counts[i]);  // NaN where the pixel does not count
+      const S one = S(int(counts[i])) / S(int(counts[i]));  // NaN where the pixel does not count
       to_red[i] = S(red[i]) * level * gain[i] * one;
       to_green[i] = S(green[i]) * level * one;
     }
@@ -274,7 +275,7 @@ class ColourRows {
                                Index col,
                                const Pixel* red,
                                const Pixel* green,
-                               const std::uint8_t* counts,
+                               const std::uint32_t* counts,
                                const GreyScale& scale,
                                Element* __restrict residual,
                                Element* __restrict to_green) const {
@@ -285,13 +286,14 @@ class ColourRows {
     const auto whole = [](S x) __attribute__((always_inline)) {  // NaN: the lowest
       x = x > low<Element> ? x : low<Element>;
       x = x < high<Element> ? x : high<Element>;
-      return std::conditional_t<sizeof(Element) == 2, std::int32_t, std::int64_t>(x);
+      return std::conditional_t<sizeof(Element) == 4, std::int32_t, std::int64_t>(x);
     };
     constexpr S zero = middle<Element> + S(0.5);  // + 1/2: truncation then rounds
+    constexpr auto shift = static_cast<std::make_signed_t<Element>>(middle<Element>);
     for (Index i = 0; i < block; ++i) {
       const S b = S(green[i]) * level;
       const S r = rise[i] * b + (scattered[i] - S(red[i]) * (gain[i] * kappa));
-      residual[i] = Element(whole(r * residual_steps<Element> + zero) & -int(counts[i]));
+      residual[i] = Element((whole(r * residual_steps<Element> + zero) - shift) & -int(counts[i]));
       to_green[i] = Element(whole(b * green_steps<Element>) & -int(counts[i]));
     }
   }
@@ -309,9 +311,9 @@ class ColourRows {
     const S* inner = inner_red_.data() + col;
     const S* outer = outer_red_.data() + col;
     const S* green = inner_green_.data() + col;
-    const S per_kappa = S(1) / kappa_, a = weight_[0], b = weight_[1];
+    const S per_kappa = per_kappa_, a = weight_[0], b = weight_[1];
     for (Index i = 0; i < block; ++i) {
-      const S steps = a * inner[i] + b * outer[i] - middle<Element>;
+      const S steps = a * inner[i] + b * outer[i];
       const S g = green[i] * (1 / green_steps<Element>);
       to_red[i] = (rise[i] * g + scattered[i] - steps * (1 / residual_steps<Element>)) * per_kappa;
       to_green[i] = g;
@@ -319,14 +321,14 @@ class ColourRows {
   }
 
   Index cols_;
-  S kappa_;
+  S kappa_, per_kappa_;
   // Planes of the area; a plane has a block of spare elements at its end.
   std::vector<S> rise_;       // exp(delta k l0)
   std::vector<S> scattered_;  // g W(l0), grey levels
   std::vector<S> per_g_;
   std::vector<S> gain_;  // a plane, or one row of 1
-  std::optional<WindowMeans<std::uint16_t>> short_means_;
-  std::optional<WindowMeans<std::int64_t, S>> wide_means_;  // empty: no window
+  std::optional<WindowMeans<std::uint32_t>> short_means_;
+  std::optional<WindowMeans<std::uint64_t, S>> wide_means_;  // empty: no window
   std::array<S, 2> weight_ = {};
   std::vector<S> inner_red_, inner_green_, outer_red_;  // means over the windows
   Index row_ = 0;

@@ -9,7 +9,7 @@
 // float means have those of a box filter. Each object is the memory of one thread and allocates
 // only at construction.
 //
-//   WindowMeans<std::uint16_t> means(rows, cols, {33, 55});
+//   WindowMeans<std::uint32_t> means(rows, cols, {33, 55});
 //   means.start(first, load_row);
 //   for (Index row = first; row < last; ++row) {
 //     means.advance(load_row, inner_red, inner_green, outer_red);
@@ -36,161 +36,148 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// For pixels of 8 or 16 bits, or of 64 bits with a sign, which must not overflow in a window.
-template <std::integral Pixel, std::floating_point Mean = float>
+/// Red has a sign and is kept modulo 2^32 (in [-2^15, 2^15]) or 2^64 (in [-2^47, 2^47]); green is
+/// below 2^16 or 2^47. The sum over all pixels above and left of a pixel may wrap: the sum over a
+/// window, a difference of four of them, fits and is exact.
+template <std::unsigned_integral Pixel, std::floating_point Mean = float>
 class WindowMeans {
  public:
   /// Refuses an empty image, and sizes that are even, out of range or not increasing.
   WindowMeans(Index rows, Index cols, const std::array<int, 2>& windows_px)
-      : rows_(rows), cols_(cols), padded_((cols + block - 1) / block * block) {
+      : rows_(rows), cols_(cols), inner_(windows_px[0] / 2), outer_(windows_px[1] / 2) {
     require("WindowMeans", {{"rows", rows, at_least(1)},
                             {"cols", cols, at_least(1)},
                             {"window_px", windows_px[0], odd_within(3, 253)},
                             {"window_px", windows_px[1], odd_within(windows_px[0] + 2, 255)}});
-    inner_ = {windows_px[0] / 2, Sums(padded_)};
-    outer_ = {windows_px[1] / 2, Sums(padded_)};
-    ring_.assign(std::size_t(2 * outer_.radius + 2), Row(padded_));
-    none_ = Row(padded_);
-    along_ = Sums(padded_ + 2 * outer_.radius + 1);
+    row_ = Planes(cols + block);
+    none_ = Planes(cols + block + 2 * outer_ + 1);
+    ring_.assign(std::size_t(2 * outer_ + 2), none_);
   }
 
   /// Prepares for row `first`.
   template <class Load>
   void start(Index first, const Load& load_row) {
     next_row_ = first;
-    for (Index row = first - 1 - outer_.radius; row < first + outer_.radius; ++row) {
+    begin_ = (std::max)(first - outer_, Index(0));
+    for (Index row = begin_; row < first + outer_; ++row) {
       take_in(row, load_row);
-    }
-    for (Window* window : {&inner_, &outer_}) {
-      std::fill(window->sums.red.begin(), window->sums.red.end(), Sum(0));
-      std::fill(window->sums.green.begin(), window->sums.green.end(), Sum(0));
-      std::fill(window->sums.count.begin(), window->sums.count.end(), 0U);
-      for (Index row = first - 1 - window->radius; row < first + window->radius; ++row) {
-        slide(row_or_none(row), none_, *window);
-      }
     }
   }
 
   /// Writes the means of the next row.
   template <class Load>
   void advance(const Load& load_row, Mean* inner_red, Mean* inner_green, Mean* outer_red) {
-    const Index row = next_row_++;
-    take_in(row + outer_.radius, load_row);
-    for (Window* window : {&inner_, &outer_}) {
-      slide(row_or_none(row + window->radius), row_or_none(row - 1 - window->radius), *window);
-    }
-    sum_along(inner_.sums.count, inner_.radius, along_.count);
-    average(inner_.sums.red, inner_.radius, along_.red, inner_red);
-    average(inner_.sums.green, inner_.radius, along_.green, inner_green);
-    sum_along(outer_.sums.count, outer_.radius, along_.count);
-    average(outer_.sums.red, outer_.radius, along_.red, outer_red);
+    take_in(next_row_ + outer_, load_row);
+    average(inner_, inner_red, inner_green);
+    average(outer_, outer_red, nullptr);
+    ++next_row_;
   }
 
  private:
   static constexpr Index block = 64;
-  static constexpr bool wide = sizeof(Pixel) == 8;
-  // Unsigned, so that running sums may wrap: their differences are exact.
-  using Sum = std::conditional_t<wide, std::uint64_t, std::uint32_t>;
 
-  template <class Value, class Count>
   struct Planes {
-    std::vector<Value> red, green;
-    std::vector<Count> count;
+    std::vector<Pixel> red, green;
+    std::vector<std::uint32_t> count;
 
     explicit Planes(Index size = 0) : red(std::size_t(size)), green(red), count(red.size()) {}
   };
-  using Row = Planes<Pixel, std::uint8_t>;
-  using Sums = Planes<Sum, std::uint32_t>;
 
-  struct Window {
-    Index radius = 0;
-    Sums sums;  ///< over the rows of the window, column by column
-  };
-
-  Row& slot(Index row) { return ring_[std::size_t(row) % ring_.size()]; }
-  const Row& row_or_none(Index row) { return row >= 0 && row < rows_ ? slot(row) : none_; }
+  /// Sums over the rows up to `row`: element j over the columns before j - outer_.
+  Planes& sums(Index row) {
+    return row < begin_ ? none_ : ring_[std::size_t((std::min)(row, rows_ - 1)) % ring_.size()];
+  }
 
   template <class Load>
   void take_in(Index row, const Load& load_row) {
-    if (row >= 0 && row < rows_) {
-      Row& to = slot(row);
-      load_row(row, to.red.data(), to.green.data(), to.count.data());
+    if (row < rows_) {
+      load_row(row, row_.red.data(), row_.green.data(), row_.count.data());
+      const Planes& above = sums(row - 1);
+      Planes& to = sums(row);
+      add(row_.red, above.red, to.red);
+      add(row_.green, above.green, to.green);
+      add(row_.count, above.count, to.count);
     }
   }
 
-  /// Moves a window down: one row in, one out.
-  void slide(const Row& in, const Row& out, Window& window) const {
-    for (std::size_t j = 0; j < std::size_t(padded_); j += std::size_t(block)) {
-      move(&in.red[j], &out.red[j], &window.sums.red[j]);
-      if (&window == &inner_) {
-        move(&in.green[j], &out.green[j], &window.sums.green[j]);
-      }
-      move(&in.count[j], &out.count[j], &window.sums.count[j]);
-    }
-  }
-
-  template <class T, class N>
-  [[gnu::noinline]] static void move(const T* __restrict in,
-                                     const T* __restrict out,
-                                     N* __restrict sum) {
-    for (Index i = 0; i < block; ++i) {
-      sum[i] = sum[i] + N(in[i]) - N(out[i]);
-    }
-  }
-
-  /// to[j] = sum of the columns before j - r, for j in [0, padded + 2 r].
+  /// to = above + the running sums of row.
   template <class N>
-  void sum_along(const std::vector<N>& columns, Index r, std::vector<N>& to) const {
-    std::fill_n(to.data(), r + 1, N(0));
-    N* sums = to.data() + r + 1;
+  void add(const std::vector<N>& row, const std::vector<N>& above, std::vector<N>& to) const {
+    const N* up = above.data() + outer_ + 1;
+    N* sums = to.data() + outer_ + 1;
     Index j = 0;
+    N sum = N(0);
 #if defined(FINGERPAD_HAS_VECTORS)
-    if constexpr (sizeof(N) == 4) {
+    if constexpr (sizeof(N) == 4) {  // GCC 12 does not vectorise running sums
       using Four = lanes<N, 4>;
-      for (Four before = {}; j + 4 <= cols_; j += 4) {
-        Four sum = load<Four>(columns.data() + j);
-        sum += __builtin_shufflevector(Four{}, sum, 0, 4, 5, 6);
-        sum += __builtin_shufflevector(Four{}, sum, 0, 1, 4, 5);
-        store(sums + j, Four(sum + before));
-        before += __builtin_shufflevector(sum, sum, 3, 3, 3, 3);
+      Four before = {};
+      for (; j + 4 <= cols_; j += 4) {
+        Four along = load<Four>(row.data() + j);
+        along += __builtin_shufflevector(Four{}, along, 0, 4, 5, 6);
+        along += __builtin_shufflevector(Four{}, along, 0, 1, 4, 5);
+        store(sums + j, Four(load<Four>(up + j) + before + along));
+        before += __builtin_shufflevector(along, along, 3, 3, 3, 3);
       }
+      sum = before[0];
     }
 #endif
     for (; j < cols_; ++j) {
-      sums[j] = sums[j - 1] + columns[std::size_t(j)];
+      sum = sum + row[std::size_t(j)];
+      sums[j] = up[j] + sum;
     }
-    std::fill_n(sums + cols_, padded_ - cols_ + r, sums[cols_ - 1]);
+    std::fill(sums + cols_, to.data() + to.size(), sums[cols_ - 1]);
   }
 
-  void average(const std::vector<Sum>& columns, Index r, std::vector<Sum>& along, Mean* to) {
-    sum_along(columns, r, along);
-    const Index width = 2 * r + 1;
+  /// Means of red, and of green unless it is nullptr.
+  void average(Index radius, Mean* to_red, Mean* to_green) {
+    const Planes& above = sums(next_row_ - radius - 1);
+    const Planes& last = sums(next_row_ + radius);
+    const Index width = 2 * radius + 1;
     for (Index j = 0; j < cols_; j += block) {
-      const Sum* sum = along.data() + j;
-      const std::uint32_t* count = along_.count.data() + j;
-      divide(sum, sum + width, count, count + width, to + j);
+      const Index left = j + outer_ - radius;
+      Mean per_pixel[block];
+      invert(&above.count[std::size_t(left)], &last.count[std::size_t(left)], width, per_pixel);
+      const auto multiply = [&]<class Sum>(const auto& top, const auto& bottom, Mean* to, Sum) {
+        scale<Sum>(&top[std::size_t(left)], &bottom[std::size_t(left)], width, per_pixel, to + j);
+      };
+      using Signed = std::make_signed_t<Pixel>;
+      multiply(above.red, last.red, to_red, Signed());
+      if (to_green != nullptr) {
+        multiply(above.green, last.green, to_green,
+                 std::conditional_t<sizeof(Pixel) == 4, Pixel, Signed>());
+      }
     }
   }
 
-  /// Multiplies by the reciprocal, as box filters do. 0 / 0 is NaN.
-  [[gnu::noinline]] static void divide(const Sum* sum_before,
-                                       const Sum* sum_after,
-                                       const std::uint32_t* before,
-                                       const std::uint32_t* after,
+  /// Reciprocals of the counts, as in box filters.
+  [[gnu::noinline]] static void invert(const std::uint32_t* above,
+                                       const std::uint32_t* last,
+                                       Index width,
                                        Mean* __restrict to) {
-    using Difference = std::conditional_t<wide, std::int64_t, Sum>;
     for (Index i = 0; i < block; ++i) {
-      const Mean per_pixel = Mean(1) / Mean(int(after[i] - before[i]));
-      to[i] = Mean(Difference(sum_after[i] - sum_before[i])) * per_pixel;
+      to[i] = Mean(1) / Mean(int((last[i + width] - last[i]) - (above[i + width] - above[i])));
     }
   }
 
-  Index rows_, cols_, padded_;
+  /// Sums times reciprocals of counts. 0 times infinity is NaN.
+  template <class Sum>
+  [[gnu::noinline]] static void scale(const Pixel* above,
+                                      const Pixel* last,
+                                      Index width,
+                                      const Mean* per_pixel,
+                                      Mean* __restrict to) {
+    for (Index i = 0; i < block; ++i) {
+      const Pixel sum = (last[i + width] - last[i]) - (above[i + width] - above[i]);
+      to[i] = Mean(Sum(sum)) * per_pixel[i];
+    }
+  }
+
+  Index rows_, cols_;
+  Index inner_, outer_;  // half windows
   Index next_row_ = 0;
-  Window inner_, outer_;
-  std::vector<Row> ring_;
-  Row none_;    // a row outside the image
-  Sums along_;  // running sums along the row
+  Index begin_ = 0;  // the first row that is summed
+  Planes row_, none_;
+  std::vector<Planes> ring_;
 };
 
 }  // namespace detail
