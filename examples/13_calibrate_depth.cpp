@@ -34,7 +34,7 @@ int main() {
   const auto fit =
       fingerpad::fit_absorption(std::span<const fingerpad::DepthSample<double>>(samples));
 
-  const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
+  const auto sd = [&](std::size_t k) { return std::sqrt(fit.covariance[k][k]); };
   const auto& fluid = fit.fluid;
   std::printf("%s, residual %.3f grey levels\n", text_of(fit), fit.residual_rms);
   std::printf("c_red            %.5f +- %.5f per mm, true %.5f\n", fluid.c_red_per_mm, sd(0),

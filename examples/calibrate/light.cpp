@@ -147,7 +147,7 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
       *std::max_element(samples.begin(), samples.end(),
                         [](const Sample& a, const Sample& b) { return a.depth_mm < b.depth_mm; });
   const double depth_sd = predicted_depth_sd(fit, deepest);
-  const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
+  const auto sd = [&](std::size_t k) { return std::sqrt(fit.covariance[k][k]); };
   const auto& fluid = fit.fluid;
   Report report{.what = "absorption", .residual = fit.residual_rms, .residual_unit = "grey levels"};
   report.parameters = {
@@ -156,8 +156,9 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
       {"kappa", fluid.kappa, sd(2)},
       {"depth_sd_at_deepest_mm", depth_sd},
       {"explained_by_depth", fit.explained}};
-  for (int i = 0; i < 3; ++i) {
-    report.covariance.push_back({fit.covariance(i, 0), fit.covariance(i, 1), fit.covariance(i, 2)});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& row = fit.covariance[i];
+    report.covariance.push_back({row[0], row[1], row[2]});
   }
   report.doubt(!fit.ok(), text_of(fit));
   report.doubt(

@@ -52,10 +52,9 @@ Trial absorption() {
   };
   const auto fit = [](const Samples& samples) {
     const auto found = fingerpad::fit_absorption(std::span(samples));
-    return Estimate{
-        {found.fluid.c_red_per_mm, found.fluid.c_green_per_mm - found.fluid.c_red_per_mm,
-         found.fluid.kappa},
-        block([&](auto i, auto j) { return found.covariance(int(i), int(j)); }, {0, 1, 2})};
+    return Estimate{{found.fluid.c_red_per_mm,
+                     found.fluid.c_green_per_mm - found.fluid.c_red_per_mm, found.fluid.kappa},
+                    block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1, 2})};
   };
   return trial({"c_red_per_mm", "c_green_less_c_red_per_mm", "kappa"},
                {fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa}, 7,

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Everything but what brings OpenCV or xtensor with it (adapt/, gel/gel_contact.hpp). What needs
-// Eigen is here where Eigen is found: the six-axis force, the whole fingertip, fits of light and
-// forces.
+// Eigen is here where Eigen is found: the six-axis force, the whole fingertip, fits of forces.
 #include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
@@ -52,7 +52,6 @@
 #include "fingerpad/slip/stick_ratio.hpp"
 
 #if __has_include(<Eigen/Core>)
-#include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"

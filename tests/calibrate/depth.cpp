@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/calibrate/depth.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -167,7 +168,7 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
   CHECK(twice.fluid.c_green_per_mm == fit.fluid.c_green_per_mm);
   CHECK(twice.fluid.kappa == fit.fluid.kappa);
   CHECK(twice.scattering.coefficient[0] == 2 * fit.scattering.coefficient[0]);
-  CHECK(twice.covariance(0, 0) == fit.covariance(0, 0));
+  CHECK(twice.covariance[0][0] == fit.covariance[0][0]);
   CHECK(twice.residual_rms == 2 * fit.residual_rms);
 
   std::vector<DepthSample<long double>> wide;
@@ -234,9 +235,9 @@ TEST_CASE("calibration of depth: errors compensate to microns of depth, as predi
       predicted_sq[k] += square(predicted_depth_sd(fit, s));
     }
     kappa_sq += square(fit.fluid.kappa - sensor.fluid.kappa);
-    kappa_predicted_sq += fit.covariance(2, 2);
-    noise_sq += square(grey_noise) * fit_absorption<0, double>(samples).covariance(2, 2) /
-                fit.covariance(2, 2);
+    kappa_predicted_sq += fit.covariance[2][2];
+    noise_sq += square(grey_noise) * fit_absorption<0, double>(samples).covariance[2][2] /
+                fit.covariance[2][2];
   }
   for (std::size_t k = 0; k < depths.size(); ++k) {
     const double error = std::sqrt(error_sq[k] / trials);
@@ -269,12 +270,13 @@ TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise 
     off -= Eigen::Vector4d(0.029, 0.0046, sensor.fluid.kappa, 0.0163);
     scatter += off * off.transpose() / trials;
   }
-  for (int k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < 4; ++k) {
     CAPTURE(k);
-    CHECK(std::sqrt(scatter(k, k) / at.covariance(k, k)) == Approx(1).margin(0.15));
+    const auto i = static_cast<Index>(k);
+    CHECK(std::sqrt(scatter(i, i) / at.covariance[k][k]) == Approx(1).margin(0.15));
   }
   const double correlation =
-      at.covariance(0, 1) / std::sqrt(at.covariance(0, 0) * at.covariance(1, 1));
+      at.covariance[0][1] / std::sqrt(at.covariance[0][0] * at.covariance[1][1]);
   const double seen = scatter(0, 1) / std::sqrt(scatter(0, 0) * scatter(1, 1));
   CHECK(seen == Approx(correlation).margin(0.02));
 }
@@ -338,19 +340,18 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
           (void)fit_absorption<1, double>(at_one_radius);
         }).find("rho_sq_mm2 = 1, must") != std::string::npos);
   const auto unknown = fit_absorption<0, double>(at({0.5, 4, 8, 12}));
-  CHECK(std::isnan(unknown.covariance(0, 0)));  // no residual to estimate the noise from
+  CHECK(std::isnan(unknown.covariance[0][0]));  // no residual to estimate the noise from
 }
 
 TEST_CASE("calibration of depth: errors of g's coefficients count by the power of the radius") {
   const Sensor sensor;
   const auto at = sensor.sample(100, 150, 5);
-  const auto sd_from = [&](int coefficient) {
+  const auto sd_from = [&](std::size_t coefficient) {
     AbsorptionFit<double, 2> fit;
     fit.fluid = sensor.fluid;
     fit.scattering.coefficient = {sensor.g[0], 0.001, 0.0005};
     fit.scattering.rho_max_mm = 20;
-    fit.covariance.setZero();
-    fit.covariance(3 + coefficient, 3 + coefficient) = 1e-8;
+    fit.covariance[3 + coefficient][3 + coefficient] = 1e-8;
     return predicted_depth_sd(fit, at);
   };
   const double share = at.rho_sq_mm2 / 400;

@@ -348,7 +348,7 @@ TEST_CASE("mistakes: the fluid", "[mistakes]") {
            s.colour = {255, 255};
          }
        }),
-       "the depths must spread"},
+       "colours must change with the depth"},
   });
 }
 

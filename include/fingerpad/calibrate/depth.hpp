@@ -15,8 +15,8 @@
 // The parameters are far less certain than the depth: their errors compensate to microns of depth
 // (docs/depth/depth.md). The result therefore includes the covariance, from which the error of a
 // depth is predicted.
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -30,7 +30,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/math/detail/householder_qr.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -72,17 +72,18 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
 /// The fluid and its uncertainty. Parameters are in the order c_red, delta, kappa, g_0, ...
 template <scalar S = double, int Degree = 0>
 struct [[nodiscard]] AbsorptionFit {
-  static constexpr int parameters = 4 + Degree;
-  using Covariance = Eigen::Matrix<S, parameters, parameters, Eigen::DontAlign>;
+  static constexpr std::size_t parameters = 4 + Degree;
 
   const char* cause = cause::not_converged;  ///< likely mistake
   Absorption<S> fluid = {};
   RadialScattering<S, Degree> scattering = {};
-  Covariance covariance = {};  ///< NaN with as many samples as parameters and no given grey_noise
-  S condition = S(0);          ///< of dF / d ln(parameter); 6e3 for depths of 0.5, 4, 8 and 12 mm
-  S residual_rms = S(0);       ///< of F, grey levels
-  S explained = S(0);          ///< share of the variance that a fit without depths leaves, both per
-                               ///< degree of freedom; NaN with as many samples as parameters
+  /// NaN with as many samples as parameters and no given grey_noise.
+  detail::SmallMatrix<S, parameters> covariance = detail::zero_matrix<S, parameters>();
+  S condition =
+      S(0);  ///< of dF / d ln(parameter), by Frobenius norms; 6e3 for depths of 0.5, 4, 8 and 12 mm
+  S residual_rms = S(0);  ///< of F, grey levels
+  S explained = S(0);     ///< share of the variance that a fit without depths leaves, both per
+                          ///< degree of freedom; NaN with as many samples as parameters
   bool delta_at_limit = false;  ///< the best delta would be < 0; it is held at 0
 
   bool ok() const { return cause == nullptr; }
@@ -103,161 +104,124 @@ S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pen
   return depth_mm * (end - depth_mm * ((h_m + h_s) * m.first + S(2) * depth_mm * m.second));
 }
 
-/// c_red and delta, with the best linear parameters for them: kappa, g_0, g_1, ...
-template <scalar S, int Linear>
+/// c_red and delta, and the best kappa, g_0, g_1, ... for them.
+template <scalar S>
 struct AbsorptionPoint {
   S c_red, delta;
-  Eigen::Matrix<S, Linear, 1, Eigen::DontAlign> linear;
-  S cost = not_a_number<S>();  ///< sum of squared residuals, each over its noise
-  // residual and its Jacobian in (ln c_red, delta), both projected on the complement of the linear
-  // columns; the Jacobian ignores that this space rotates (Kaufman), which affects the steps but
-  // not the minimum
-  Eigen::Matrix<S, Eigen::Dynamic, 1> residual = {};
-  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> jacobian = {};
+  std::vector<S> linear;
+  S cost = not_a_number<S>();  // sum of squared residuals, each over its noise
+  Triangle<S> triangle = {};   // of the equations, each over its noise
 
-  /// Whether kappa and g_0 are positive. There are unphysical minima where they are not.
-  bool is_physical() const { return is_finite(cost) && linear(0) > 0 && linear(1) > 0; }
-};
-
-/// The equations, each over its noise, of fluids whose g has Linear - 1 coefficients.
-template <scalar S, int Linear>
-class AbsorptionProblem {
- public:
-  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
-  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
-  using Point = AbsorptionPoint<S, Linear>;
-
-  AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& rho_sq_max)
-      : samples_(samples), rho_sq_max_(rho_sq_max), weight_(Vector::Ones(size())) {
-    weight_ = weighted([](const DepthSample<S>& s) { return s.weight; });
+  /// Appends dF by kappa, g_0, g_1, ..., c_red and delta, and F without kappa and g, times
+  /// `weight`.
+  void append(const DepthSample<S>& s,
+              const S& rho_sq_max,
+              const S& weight,
+              std::vector<S>& rows) const {
+    using std::exp;
+    const S path = s.pencil.path_factor * s.depth_mm;
+    const S light = scattered_light(s.depth_mm, c_red, s.pencil);
+    const S membrane = weight * s.colour.green * exp(delta * path);
+    S power = weight, g = S(0);
+    rows.push_back(-weight * s.colour.red);
+    for (std::size_t k = 1; k < linear.size(); ++k, power *= s.rho_sq_mm2 / rho_sq_max) {
+      rows.push_back(power * light);
+      g += power * linear[k];
+    }
+    rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.pencil));
+    rows.push_back(membrane * path);
+    rows.push_back(membrane);
   }
 
-  Index size() const { return static_cast<Index>(samples_.size()); }
+  /// Whether kappa and g_0 are positive. There are unphysical minima where they are not.
+  bool is_physical() const { return is_finite(cost) && linear[0] > 0 && linear[1] > 0; }
+};
 
-  /// Sum of squares of the weighted greens, the scale of the cost.
-  S green_sq() const { return membrane(S(0)).squaredNorm(); }
+/// The equations, each over its noise.
+template <scalar S>
+class AbsorptionProblem {
+ public:
+  AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& rho_sq_max)
+      : samples_(samples), rho_sq_max_(rho_sq_max) {
+    for (const DepthSample<S>& s : samples) {
+      weights_.push_back(s.weight);
+    }
+  }
 
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
   /// of a colour. It is constant to a few per cent over the depths of a pad.
-  void weigh(const Point& p) {
+  void weigh(const AbsorptionPoint<S>& p) {
     using std::exp;
     using std::sqrt;
-    weight_.setOnes();
-    weight_ = weighted([&](const DepthSample<S>& s) {
-      return S(s.weight / sqrt(exp(S(2) * p.delta * path(s)) + square(S(p.linear(0)))));
-    });
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const DepthSample<S>& s = samples_[i];
+      const S path = s.pencil.path_factor * s.depth_mm;
+      weights_[i] = s.weight / sqrt(exp(S(2) * p.delta * path) + square(p.linear[0]));
+    }
   }
 
-  /// Eliminates the linear parameters.
-  Point project(const S& c_red, const S& delta, bool with_jacobian) const {
-    const HouseholderQr<S> qr(linear_columns(c_red));
-    Matrix rest(size(), with_jacobian ? 3 : 1);
-    rest.col(0) = membrane(delta);
-    Point p{c_red, delta, qr.solve(-rest.col(0))};
-    if (with_jacobian) {
-      rest.rightCols(2) = slopes(p);
-      rest.col(1) *= c_red;
+  /// The point at c_red and delta. The columns of these are projected on the complement of the
+  /// linear ones; that this space rotates is ignored (Kaufman), and so is the change of g since
+  /// `linear`, which affects the steps but not the minimum.
+  AbsorptionPoint<S> project(const S& c_red, const S& delta, const std::vector<S>& linear) const {
+    AbsorptionPoint<S> p{c_red, delta, linear};
+    const std::size_t count = linear.size();
+    std::vector<S> rows;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      p.append(samples_[i], rho_sq_max_, weights_[i], rows);
     }
-    qr.apply_transposed(rest);
-    p.residual = rest.col(0).tail(size() - Linear);
-    p.jacobian = rest.bottomRightCorner(size() - Linear, rest.cols() - 1);
-    p.cost = p.residual.squaredNorm();
+    p.triangle = Triangle<S>(std::move(rows), count + 3);
+    p.linear = p.triangle.solve(count, count + 2);
+    for (S& x : p.linear) {
+      x = -x;
+    }
+    p.cost = S(0);
+    for (std::size_t k = count; k < count + 3; ++k) {
+      p.cost += square(p.triangle(k, count + 2));
+    }
     return p;
   }
 
   /// Share of the variance explained by depth. The comparison is a fit of kappa and g alone,
   /// without absorption and with W = 1; both variances are per degree of freedom.
-  S explained_by_depth(const Point& p) const {
-    const Index left = size() - Linear - 2;
-    Matrix green = membrane(S(0));
-    HouseholderQr<S>(columns([](const DepthSample<S>&) { return S(1); })).apply_transposed(green);
-    const S without = green.bottomRows(size() - Linear).squaredNorm();
-    return left > 0 ? S(1) - p.cost / S(static_cast<double>(left)) /
-                                 (without / S(static_cast<double>(left + 2)))
-                    : not_a_number<S>();
-  }
-
-  /// d(weighted F)/d(c_red, delta, kappa, g_0, ...): size x (2 + Linear).
-  Matrix full_jacobian(const Point& p) const {
-    Matrix j(size(), 2 + Linear);
-    j.leftCols(2) = slopes(p);
-    j.rightCols(Linear) = linear_columns(p.c_red);
-    return j;
+  S explained_by_depth(const AbsorptionPoint<S>& p) const {
+    const std::size_t count = p.linear.size();
+    std::vector<S> rows;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      rows.push_back(-weights_[i] * samples_[i].colour.red);
+      S power = weights_[i];
+      for (std::size_t k = 1; k < count; ++k, power *= samples_[i].rho_sq_mm2 / rho_sq_max_) {
+        rows.push_back(power);
+      }
+      rows.push_back(weights_[i] * samples_[i].colour.green);
+    }
+    const S without_sq = square(Triangle<S>(std::move(rows), count + 1)(count, count));
+    const double left = static_cast<double>(samples_.size()) - static_cast<double>(count + 2);
+    return left > 0 ? S(1) - p.cost / S(left) / (without_sq / S(left + 2)) : not_a_number<S>();
   }
 
  private:
-  static S path(const DepthSample<S>& s) { return s.pencil.path_factor * s.depth_mm; }
-
-  template <class Of>
-  Vector weighted(const Of& of) const {
-    Vector all(size());
-    for (Index i = 0; i < size(); ++i) {
-      all(i) = weight_(i) * of(samples_[static_cast<std::size_t>(i)]);
-    }
-    return all;
-  }
-
-  /// Green times e^{delta k l}.
-  Vector membrane(const S& delta) const {
-    using std::exp;
-    return weighted(
-        [&](const DepthSample<S>& s) { return S(s.colour.green * exp(delta * path(s))); });
-  }
-
-  /// d(weighted F)/d(c_red, delta).
-  Matrix slopes(const Point& p) const {
-    using std::exp;
-    Matrix by(size(), 2);
-    by.col(0) = weighted([&](const DepthSample<S>& s) {
-      S g = p.linear(Linear - 1);
-      for (int k = Linear - 2; k >= 1; --k) {
-        g = g * s.rho_sq_mm2 / rho_sq_max_ + p.linear(k);
-      }
-      return S(g * scattered_light_per_absorption(s.depth_mm, p.c_red, s.pencil));
-    });
-    by.col(1) = weighted([&](const DepthSample<S>& s) {
-      return S(s.colour.green * path(s) * exp(p.delta * path(s)));
-    });
-    return by;
-  }
-
-  Matrix linear_columns(const S& c_red) const {
-    return columns(
-        [&](const DepthSample<S>& s) { return scattered_light(s.depth_mm, c_red, s.pencil); });
-  }
-  /// Columns of kappa, g_0, g_1, ..., where light(sample) is W.
-  template <class Light>
-  Matrix columns(const Light& light) const {
-    Matrix a(size(), Linear);
-    a.col(0) = weighted([](const DepthSample<S>& s) { return S(-s.colour.red); });
-    a.col(1) = weighted(light);
-    for (Index i = 0; i < size(); ++i) {
-      for (int k = 2; k < Linear; ++k) {
-        a(i, k) = a(i, k - 1) * samples_[static_cast<std::size_t>(i)].rho_sq_mm2 / rho_sq_max_;
-      }
-    }
-    return a;
-  }
-
   std::span<const DepthSample<S>> samples_;
   S rho_sq_max_;
-  Vector weight_;  // of each equation
+  std::vector<S> weights_;  // of each equation
 };
 
 /// Levenberg-Marquardt descent from p; true if it converged to roundoff.
-template <scalar S, int Linear>
-bool descend(const AbsorptionProblem<S, Linear>& problem,
-             AbsorptionPoint<S, Linear>& p,
-             int max_iterations) {
+template <scalar S>
+bool descend(const AbsorptionProblem<S>& problem, AbsorptionPoint<S>& p, int max_iterations) {
   using std::exp;
   const S tiny = S(4) * epsilon<S>();
   S damping = S(1) / S(1000);
-  p = problem.project(p.c_red, p.delta, true);
+  p = problem.project(p.c_red, p.delta, p.linear);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const auto by_c = p.jacobian.col(0), by_delta = p.jacobian.col(1);
-    const S down_c = -by_c.dot(p.residual), down_delta = -by_delta.dot(p.residual);
-    const S cc = by_c.squaredNorm() * (S(1) + damping), cd = by_c.dot(by_delta),
-            dd = by_delta.squaredNorm() * (S(1) + damping), determinant = cc * dd - cd * cd;
+    // the columns of ln c_red, delta and F, in the triangle that is left of them
+    const std::size_t n = p.linear.size();
+    const S c = p.c_red * p.triangle(n, n), along = p.triangle(n, n + 1);
+    const S across = p.triangle(n + 1, n + 1), f = p.triangle(n, n + 2);
+    const S down_c = -c * f, down_delta = -along * f - across * p.triangle(n + 1, n + 2);
+    const S cc = square(c) * (S(1) + damping), cd = c * along;
+    const S dd = (square(along) + square(across)) * (S(1) + damping);
+    const S determinant = cc * dd - cd * cd;
     // At the limit delta = 0, delta only moves if that is downhill.
     const bool at_limit = !(p.delta > S(0)) && !(down_delta > S(0));
     const S step = at_limit ? S(down_c / cc) : S((dd * down_c - cd * down_delta) / determinant);
@@ -265,7 +229,7 @@ bool descend(const AbsorptionProblem<S, Linear>& problem,
     const S delta =
         at_limit ? S(0)
                  : (std::max)(S(p.delta + (cc * down_delta - cd * down_c) / determinant), S(0));
-    const auto next = problem.project(c_red, delta, true);
+    const auto next = problem.project(c_red, delta, p.linear);
     const bool moved = !(square(step) + square((delta - p.delta) / c_red) <= square(tiny));
     if (next.is_physical() && next.cost < p.cost) {
       const bool gained = next.cost < p.cost * (S(1) - S(100) * epsilon<S>());
@@ -288,25 +252,30 @@ bool descend(const AbsorptionProblem<S, Linear>& problem,
 /// starts at the best c_red for each delta, because there can be several minima. Of minima equal up
 /// to roundoff (four samples can have two exact solutions), that of the smallest delta is taken.
 /// Needs no initial guess. The cost is NaN if no fluid is physical.
-template <scalar S, int Linear>
-AbsorptionPoint<S, Linear> search_absorption(const AbsorptionProblem<S, Linear>& problem,
-                                             int max_iterations) {
+template <scalar S>
+AbsorptionPoint<S> search_absorption(const AbsorptionProblem<S>& problem,
+                                     std::size_t linear,
+                                     int max_iterations) {
   using std::exp;
-  AbsorptionPoint<S, Linear> best{};
-  const S roundoff = square(S(1000) * epsilon<S>()) * problem.green_sq();
+  const AbsorptionPoint<S> none = {S(0), S(0), std::vector<S>(linear, S(0))};
+  AbsorptionPoint<S> best = none;
   for (int j = 0; j <= 8; ++j) {
     const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
-    AbsorptionPoint<S, Linear> start{};
+    AbsorptionPoint<S> start = none;
     for (int i = 0; i <= 24; ++i) {
       const S c_red = exp(S(i) / S(4)) / S(1000);  // 0.001 to 0.4 per mm
-      const auto p = problem.project(c_red, delta, false);
+      const auto p = problem.project(c_red, delta, none.linear);
       if (p.is_physical() && !(start.cost < p.cost)) {
         start = p;
       }
     }
     if (is_finite(start.cost)) {
       descend(problem, start, max_iterations);
-      if (!(best.cost <= start.cost + roundoff)) {
+      S scale_sq = S(0);
+      for (std::size_t k = 0; k < linear + 3; ++k) {
+        scale_sq += square(start.triangle(k, linear + 2));
+      }
+      if (!(best.cost <= start.cost + square(S(1000) * epsilon<S>()) * scale_sq)) {
         best = start;
       }
     }
@@ -364,10 +333,12 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   require(owner, {{"grey_noise", grey_noise, not_negative}});
   const S rho_sq = detail::expects_determined(samples, Degree);
   const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
-  detail::AbsorptionProblem<S, Degree + 2> problem(samples, rho_sq_max);
-  auto p = detail::search_absorption(problem, 60);
-  expects(is_finite(p.cost), owner, "residual", p.cost,
-          "finite with kappa > 0 and g > 0: check whether red and green are exchanged");
+  detail::AbsorptionProblem<S> problem(samples, rho_sq_max);
+  auto p = detail::search_absorption(problem, Degree + 2, 60);
+  expects(
+      is_finite(p.cost), owner, "residual", p.cost,
+      "finite with kappa > 0 and g > 0: colours must change with the depth; check whether red and "
+      "green are exchanged");
   AbsorptionFit<S, Degree> fit;
   bool converged = false;
   for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
@@ -375,22 +346,32 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     converged = detail::descend(problem, p, 200);
   }
 
-  // scales of the parameters, for a condition number that does not depend on units; delta may be 0
-  Eigen::Matrix<S, 4 + Degree, 1, Eigen::DontAlign> size;
-  size << p.c_red, (std::max)(p.delta, p.c_red / S(10)), p.linear;
-  size.template tail<Degree + 1>().setConstant(p.linear(1));
-  size = size.cwiseAbs().eval();
-  const detail::HouseholderQr<S> qr(problem.full_jacobian(p) * size.asDiagonal());
-  fit.condition = detail::condition_number(qr.r());
+  // R over the scales of the parameters, for a condition number that does not depend on units;
+  // delta may be 0
+  constexpr std::size_t linear = Degree + 2, all = linear + 2;
+  std::array<S, all> size;
+  size.fill(p.linear[1]);
+  size[0] = p.linear[0];
+  size[linear] = p.c_red;
+  size[linear + 1] = (std::max)(p.delta, p.c_red / S(10));
+  const std::vector<S> covariance = p.triangle.covariance(all);
+  S r_sq = S(0), inverse_sq = S(0);
+  for (std::size_t j = 0; j < all; ++j) {
+    inverse_sq += covariance[j * all + j] / square(size[j]);
+    for (std::size_t i = 0; i <= j; ++i) {
+      r_sq += square(p.triangle(i, j) * size[j]);
+    }
+  }
+  fit.condition = sqrt(r_sq * inverse_sq);
   expects(is_finite(fit.condition) && fit.condition < S(1e8), owner, "condition number",
           fit.condition,
           "< 1e8: the depths must spread over several mm, and differ at every radius");
 
   fit.fluid.c_red_per_mm = p.c_red;
   fit.fluid.c_green_per_mm = p.c_red + p.delta;
-  fit.fluid.kappa = p.linear(0);
+  fit.fluid.kappa = p.linear[0];
   for (std::size_t j = 0; j < fit.scattering.coefficient.size(); ++j) {
-    fit.scattering.coefficient[j] = p.linear(static_cast<Index>(j) + 1);
+    fit.scattering.coefficient[j] = p.linear[j + 1];
   }
   fit.scattering.rho_max_mm = sqrt(rho_sq_max);
   fit.delta_at_limit = !(p.delta > S(0));
@@ -398,10 +379,11 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   const int left = static_cast<int>(samples.size()) - (4 + Degree);
   const S by_residual = left > 0 ? S(sqrt(p.cost / S(left))) : not_a_number<S>();
   const S noise = grey_noise > S(0) ? grey_noise : by_residual;
-  // (J^T J)^-1 = R^-1 R^-T, for parameters relative to their size.
-  const typename detail::AbsorptionProblem<S, Degree + 2>::Matrix scaled =
-      size.asDiagonal() * qr.inverse_of_r() * noise;
-  fit.covariance = scaled.lazyProduct(scaled.transpose());
+  for (std::size_t i = 0; i < all; ++i) {  // c_red and delta come first
+    for (std::size_t j = 0; j < all; ++j) {
+      fit.covariance[(i + 2) % all][(j + 2) % all] = square(noise) * covariance[i * all + j];
+    }
+  }
   fit.explained = problem.explained_by_depth(p);
   S deepest = S(0), squares = S(0);
   bool is_lit = fit.scattering.at(S(0)) > S(0);
@@ -427,18 +409,19 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 template <scalar S, int Degree>
 S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
   using std::sqrt;
-  DepthSample<S> sample = at;
-  sample.weight = S(1);
-  detail::AbsorptionPoint<S, Degree + 2> p{
-      fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm, {}};
-  p.linear(0) = fit.fluid.kappa;
-  for (int j = 0; j <= Degree; ++j) {
-    p.linear(j + 1) = fit.scattering.coefficient[static_cast<std::size_t>(j)];
+  constexpr std::size_t all = Degree + 4;
+  detail::AbsorptionPoint<S> p{
+      fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm, {fit.fluid.kappa}};
+  const auto& g = fit.scattering.coefficient;
+  p.linear.insert(p.linear.end(), g.begin(), g.end());
+  std::vector<S> by;
+  p.append(at, square(fit.scattering.rho_max_mm), S(1), by);
+  S variance = S(0);
+  for (std::size_t i = 0; i < all; ++i) {
+    for (std::size_t j = 0; j < all; ++j) {
+      variance += by[i] * fit.covariance[(i + 2) % all][(j + 2) % all] * by[j];
+    }
   }
-  const detail::AbsorptionProblem<S, Degree + 2> problem(
-      std::span<const DepthSample<S>>(&sample, 1), square(fit.scattering.rho_max_mm));
-  const Eigen::Matrix<S, 4 + Degree, 1> by = problem.full_jacobian(p).row(0);
-  const S variance = by.dot(fit.covariance * by);
   const auto [f, slope] = depth_equation(fit.fluid, at.pencil, fit.scattering.at(at.rho_sq_mm2),
                                          at.colour, at.depth_mm);
   return sqrt(variance) / slope;

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Least squares by Householder reflections, for every scalar. Eigen's factorisation is blocked,
-// which gains nothing for a dozen columns and makes fit_absorption take 4.7 times as long to
-// compile.
+// which gains nothing for a dozen columns and takes several times as long to compile.
 #include <Eigen/Core>
 #include <cmath>
 #include <utility>
@@ -62,16 +61,6 @@ class HouseholderQr {
     return inverse;
   }
 
-  Matrix r() const {
-    Matrix r = Matrix::Zero(a_.cols(), a_.cols());
-    for (Index j = 0; j < a_.cols(); ++j) {
-      for (Index i = 0; i <= j; ++i) {
-        r(i, j) = a_(i, j);
-      }
-    }
-    return r;
-  }
-
  private:
   /// Replaces column k from the diagonal down by its reflection vector v. R(k, k) takes the place
   /// of the leading 1. Returns the factor 2 / |v|^2.
@@ -122,46 +111,6 @@ class HouseholderQr {
   Matrix a_;       // R on and above the diagonal, the reflection vectors below
   Vector factor_;  // 0: column k needs no reflection
 };
-
-/// Condition number of a small square matrix: its largest over its smallest singular value, by
-/// one-sided Jacobi rotations. Infinite or NaN if the matrix is singular.
-template <class Matrix>
-auto condition_number(Matrix a) {
-  using S = typename Matrix::Scalar;
-  using std::sqrt;
-  const Index n = a.cols();
-  bool rotated = true;
-  for (int sweep = 0; rotated && sweep < 60; ++sweep) {
-    rotated = false;
-    for (Index p = 0; p < n; ++p) {
-      for (Index q = p + 1; q < n; ++q) {
-        const S pp = a.col(p).squaredNorm(), qq = a.col(q).squaredNorm();
-        const S pq = a.col(p).dot(a.col(q));
-        if (!(square(pq) > S(square(epsilon<S>())) * pp * qq)) {
-          continue;
-        }
-        rotated = true;
-        const S zeta = (qq - pp) / (S(2) * pq);
-        const S root = sqrt(S(1) + square(zeta));
-        const S t = S(1) / (zeta > S(0) ? zeta + root : zeta - root);
-        const S c = S(1) / sqrt(S(1) + square(t));
-        const S s = c * t;
-        for (Index i = 0; i < a.rows(); ++i) {
-          const S x = a(i, p), y = a(i, q);
-          a(i, p) = c * x - s * y;
-          a(i, q) = s * x + c * y;
-        }
-      }
-    }
-  }
-  S largest = S(0), smallest = a.col(0).norm();
-  for (Index k = 0; k < n; ++k) {
-    const S size = a.col(k).norm();
-    largest = size > largest ? size : largest;
-    smallest = size < smallest ? size : smallest;
-  }
-  return largest / smallest;
-}
 
 }  // namespace detail
 }  // namespace v0
