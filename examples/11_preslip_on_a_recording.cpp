@@ -3,21 +3,21 @@
 // Detects when a held object begins to slip. Foam fingers detect it by vibrations, without a
 // coefficient of friction. Prints the first alarm of each rule and the state of the fingers then.
 // Usage: 11_preslip_on_a_recording [TAXELS.csv [FINGERS [QUIET_UNTIL_S]]]
-// The fingers (1 to 3, default 2) share the rows of the table evenly, one below the other. The
+// The fingers (default 2) share the rows of the table evenly, one below the other. The
 // noise is estimated from the part until QUIET_UNTIL_S (default 3), in which nothing may be
 // touched.
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 
 #ifndef FINGERPAD_EXAMPLE_RECORDING
@@ -66,15 +66,12 @@ Recording read(const char* file) {
   return recording;
 }
 
-/// Both rules, to compare them.
-struct BothRules : FoamHandMethods {
-  static constexpr bool has_grasp_optimise = true;
-};
-
-template <class Result>
-void print_alarm(const char* rule, double time_s, const Result& felt, Index cols) {
-  std::printf("%s: first alarm at %.3f s\n", rule, time_s);
-  for (const FingerSample<>& f : felt.fingers) {
+void print_alarm(PreslipRule rule,
+                 double time_s,
+                 std::span<const FingerSample<>> fingers,
+                 Index cols) {
+  std::printf("%s: first alarm at %.3f s\n", name_of(rule), time_s);
+  for (const FingerSample<>& f : fingers) {
     std::printf("  centroid (%.2f, %.2f) mm, ", f.center_x_mm, f.center_y_mm);
     if (f.is_vibrating()) {
       std::printf("taxel at row %td, col %td vibrates: %td waves, %.2f Hz\n", f.location / cols,
@@ -86,49 +83,46 @@ void print_alarm(const char* rule, double time_s, const Result& felt, Index cols
 }
 
 /// Returns whether both rules raise an alarm.
-template <std::size_t Fingers>
-bool look(const Recording& recording, double quiet_until_s) {
-  const Index rows = recording.rows / Index(Fingers), cols = recording.cols;
-  const auto fingers_of = [&](const Sample& sample) {  // no copy
-    std::array<StridedView<const double>, Fingers> fingers;
-    for (std::size_t f = 0; f < Fingers; ++f) {
-      fingers[f] = {sample.readings.data() + Index(f) * rows * cols, rows, cols, cols};
-    }
-    return fingers;
+bool look(const Recording& recording, int fingers, double quiet_until_s) {
+  const Index rows = recording.rows / fingers, cols = recording.cols;
+  const auto finger_of = [&](const Sample& sample, int f) {  // no copy
+    return StridedView<const double>(sample.readings.data() + f * rows * cols, rows, cols, cols);
   };
 
-  // Once: the noise of each finger.
-  FoamHandOptions<Fingers> options;
-  std::vector<TaxelNoise<>> noise;
-  for (std::size_t f = 0; f < Fingers; ++f) {
-    TaxelNoiseCalibration calibration(rows, cols, options.taxels);
+  // Once: the fingers, each with its noise.
+  std::vector<TaxelFeatures<>> features;
+  for (int f = 0; f < fingers; ++f) {
+    TaxelNoiseCalibration calibration(rows, cols);
     for (const Sample& sample : recording.samples) {
       if (sample.time_s <= quiet_until_s) {
-        calibration.add(fingers_of(sample)[f], sample.time_s);
+        calibration.add(finger_of(sample, f), sample.time_s);
       }
     }
-    noise.push_back(calibration.fit());
+    features.emplace_back(rows, cols, TaxelOptions(), calibration.fit().deviations);
   }
-  for (std::size_t f = 0; f < Fingers; ++f) {
-    options.arrays[f] = {rows, cols, noise[f].view()};
-  }
-  FoamHand<Fingers, BothRules> hand(options);
+  // One rule is enough for a hand; here both are compared.
+  FoamHand<> hand(features);
+  Preslip<> optimise(fingers, {.rule = PreslipRule::grasp_optimise});
 
   bool in_hold = false, in_lift = false;
   for (const Sample& sample : recording.samples) {  // each as it is received
-    const auto felt = hand(fingers_of(sample), sample.time_s);
-    if (felt.grasp_lift.is_fresh && !in_lift) {
-      print_alarm(GraspLift::name, sample.time_s, felt, cols);
+    std::vector<StridedView<const double>> readings;
+    for (int f = 0; f < fingers; ++f) {
+      readings.push_back(finger_of(sample, f));
+    }
+    const PreslipStatus lift = hand(readings, sample.time_s);
+    if (lift == PreslipStatus::preslip && !in_lift) {
+      print_alarm(PreslipRule::grasp_lift, sample.time_s, hand.fingers(), cols);
       in_lift = true;
     }
-    if (felt.grasp_optimise.is_fresh && !in_hold) {
-      print_alarm(GraspOptimise::name, sample.time_s, felt, cols);
+    if (optimise(hand.fingers()) == PreslipStatus::preslip && !in_hold) {
+      print_alarm(PreslipRule::grasp_optimise, sample.time_s, hand.fingers(), cols);
       in_hold = true;
     }
   }
   if (!in_lift || !in_hold) {
-    std::printf("%s: no alarm in %zu samples\n", in_lift ? GraspOptimise::name : GraspLift::name,
-                recording.samples.size());
+    const PreslipRule silent = in_lift ? PreslipRule::grasp_optimise : PreslipRule::grasp_lift;
+    std::printf("%s: no alarm in %zu samples\n", name_of(silent), recording.samples.size());
   }
   return in_lift && in_hold;
 }
@@ -138,13 +132,11 @@ int main(int argc, char** argv) {
     const Recording recording =
         read(argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING "/../foam/taxels.csv");
     const int fingers = argc > 2 ? std::atoi(argv[2]) : 2;
-    if (fingers < 1 || fingers > 3 || recording.rows % fingers != 0) {
-      throw std::runtime_error("the rows of the array must be divisible among 1 to 3 fingers");
+    if (fingers < 1 || fingers > 100 || recording.rows % fingers != 0) {
+      throw std::runtime_error("the rows of the array must be divisible among the fingers");
     }
     const double quiet_until_s = argc > 3 ? std::atof(argv[3]) : 3;
-    const bool found = fingers == 1   ? look<1>(recording, quiet_until_s)
-                       : fingers == 2 ? look<2>(recording, quiet_until_s)
-                                      : look<3>(recording, quiet_until_s);
+    const bool found = look(recording, fingers, quiet_until_s);
     return found || argc > 1 ? 0 : 1;  // the bundled recording must raise both alarms
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -10,41 +10,35 @@
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "grip/foam_fingers.hpp"
 
-/// The rule of the paper's first experiment.
-struct WhileLoosening : fingerpad::FoamHandMethods {
-  static constexpr bool has_grasp_lift = false, has_grasp_optimise = true;
-};
-
 int main() {
   const grip::FoamFingersSetup object;
   grip::FoamFingers hand(object, 1);
 
-  fingerpad::FoamHandOptions<2> options;
-  options.arrays.fill({object.rows, object.cols});
-  options.taxels.pitch_mm = object.pitch_mm;
-  options.taxels.sample_period_s = 1 / object.rate_hz;
-  options.taxels.noise = object.noise_counts;
-  fingerpad::FoamHand<2, WhileLoosening> foam(options);
-  const fingerpad::LoosenUntilPreslip loosen({.first_force_n = object.first_force_n,
-                                              .min_force_n = 0.1,
-                                              .step_n = 0.2,
-                                              .settle_samples = 4,
-                                              .watch_samples = 36,
-                                              .until_slipped = true});
-  auto search = loosen.start();
+  const fingerpad::TaxelFeatures<> finger(object.rows, object.cols,
+                                          {.pitch_mm = object.pitch_mm,
+                                           .sample_period_s = 1 / object.rate_hz,
+                                           .noise = object.noise_counts});
+  // the rule of the paper's first experiment
+  fingerpad::FoamHand<> foam({finger, finger}, {.rule = fingerpad::PreslipRule::grasp_optimise});
+  fingerpad::LoosenUntilPreslip loosen({.first_force_n = object.first_force_n,
+                                        .min_force_n = 0.1,
+                                        .step_n = 0.2,
+                                        .settle_samples = 4,
+                                        .watch_samples = 36,
+                                        .until_slipped = true});
 
-  auto command = search.command();
+  auto command = loosen.command();
   bool warned = false;
   while (!is_end(command.phase)) {
     hand.advance(command.force_n);
-    const auto felt = foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
-    command = loosen(hand.has_slipped() ? fingerpad::PreslipStatus::slipped : felt.status, search);
+    const auto status = foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
+    command = loosen(hand.has_slipped() ? fingerpad::PreslipStatus::slipped : status);
     if (!warned && command.preslip_force_n > 0) {
       warned = true;
       std::printf(
           "%5.2f s  %4.1f N  pre-slip: taxel %td of one finger and %td of the other, %td waves\n",
-          hand.time_s(), command.preslip_force_n, felt.fingers[0].location,
-          felt.fingers[1].location, felt.fingers[0].waves);
+          hand.time_s(), command.preslip_force_n, foam.fingers()[0].location,
+          foam.fingers()[1].location, foam.fingers()[0].waves);
     }
   }
   std::printf("%5.2f s  %4.1f N  %s, %td steps after the warning\n", hand.time_s(), hand.force_n(),

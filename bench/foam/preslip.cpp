@@ -5,8 +5,8 @@
 //   no pair   both fingers always vibrate, with 1 to 8 waves in turn, but at one taxel: the whole
 //             history is searched
 //   slipping  both fingers vibrate at any taxel with any of 1 to 8 waves: pairs are found soon
-// Error: the share of the first 400 samples whose answer differs from that of StackScan in double.
-// "detection": patches of foam fingers begin to slip at a known time
+// Error: the share of the first 400 samples whose answer differs from the rule on all pairs with
+// the newest sample, in double. "detection": patches of foam fingers begin to slip at a known time
 // (tests/support/foam_signals.hpp). Error: the delay of the alarm, in windows of 16 samples; an
 // earlier alarm counts as none.
 // "least force": an object hangs between simulated foam fingers (examples/grip/foam_fingers.hpp),
@@ -17,18 +17,15 @@
 
 #include <array>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bench/support/run.hpp"
 #include "examples/grip/foam_fingers.hpp"
 #include "fingerpad/foam/holding_force.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
-#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "support/foam_signals.hpp"
 
 using namespace fingerpad;
@@ -38,16 +35,6 @@ namespace {
 template <class S>
 using HandOf = std::array<FingerSample<S>, 2>;
 using Hand = HandOf<double>;
-
-/// Search methods.
-struct Newest {
-  template <class Rule, class S>
-  using Estimator = Preslip<Rule, 2, S>;
-};
-struct Scan {
-  template <class Rule, class S>
-  using Estimator = published::StackScan<Rule, 2, S>;
-};
 
 enum class Scene { quiet, no_pair, slipping };
 
@@ -63,8 +50,9 @@ HandOf<S> as(const Hand& from) {
     to[f].status = from[f].status;
     to[f].center_x_mm = static_cast<S>(from[f].center_x_mm);
     to[f].center_y_mm = static_cast<S>(from[f].center_y_mm);
-    to[f].location = from[f].location;
-    to[f].waves = from[f].waves;
+    if (from[f].is_vibrating()) {
+      to[f].add_vibration(from[f].location, from[f].waves);
+    }
   }
   return to;
 }
@@ -81,9 +69,10 @@ std::vector<HandOf<S>> samples(Scene scene) {
     for (auto& sample : hand) {
       sample.center_x_mm = 8 + 0.01 * static_cast<double>(any(100));
       sample.center_y_mm = 20 + 0.01 * static_cast<double>(any(100));
+      sample.status = scene == Scene::quiet ? TaxelStatus::quiet : TaxelStatus::vibrating;
       if (scene != Scene::quiet) {
-        sample.location = scene == Scene::no_pair ? 40 : any(162);
-        sample.waves = 1 + any(8);
+        const Index location = scene == Scene::no_pair ? 40 : any(162);
+        sample.add_vibration(location, 1 + any(8));
       }
     }
     all.push_back(as<S>(hand));
@@ -91,77 +80,77 @@ std::vector<HandOf<S>> samples(Scene scene) {
   return all;
 }
 
-/// Answers of Rule and Search for the first samples of a scene.
-template <class Rule, class Search, class S>
-std::vector<PreslipResult> answers(Scene scene, Index history) {
-  const typename Search::template Estimator<Rule, S> preslip({.history = history});
-  auto state = preslip.start();
+/// Whether each of the first samples of a scene is pre-slip.
+template <class S>
+std::vector<bool> answers(Scene scene, const PreslipOptions& options) {
+  Preslip<S> preslip(2, options);
   const auto hands = samples<S>(scene);
-  std::vector<PreslipResult> all;
+  std::vector<bool> all;
   for (std::size_t k = 0; k < 400; ++k) {
-    all.push_back(preslip(hands[k], state));
+    all.push_back(preslip(hands[k]) == PreslipStatus::preslip);
   }
   return all;
 }
 
-template <class Rule>
-const std::vector<PreslipResult>& true_answers(Scene scene, Index history) {
-  static std::map<std::pair<Scene, Index>, std::vector<PreslipResult>> known;
-  auto& all = known[{scene, history}];
-  if (all.empty()) {
-    all = answers<Rule, Scan, double>(scene, history);
+/// The same by the rule alone.
+std::vector<bool> true_answers(Scene scene, const PreslipOptions& options) {
+  const auto hands = samples<double>(scene);
+  std::vector<bool> all;
+  for (std::size_t k = 0; k < 400; ++k) {
+    const auto kept = static_cast<std::size_t>(options.history) - 1;
+    bool pairs = false;
+    for (std::size_t older = k > kept ? k - kept : 0; older < k; ++older) {
+      pairs = pairs || is_preslip(hands[older], hands[k], options);
+    }
+    all.push_back(pairs);
   }
   return all;
 }
 
-template <class Rule, class Search, class S = double>
-void add(const std::string& rule, const std::string& search, Scene scene, Index history) {
-  using Estimator = typename Search::template Estimator<Rule, S>;
+template <class S = double>
+void add(const std::string& name, PreslipRule rule, Scene scene, Index history) {
+  const PreslipOptions options{.rule = rule, .history = history};
   struct Data {
-    Estimator preslip;
-    typename Estimator::State state = preslip.start();
-    std::size_t k = 0;
+    Preslip<S> preslip;
+    Index k = 0;
   };
   const auto hands = std::make_shared<const std::vector<HandOf<S>>>(samples<S>(scene));
   const bench::Memory memory;
-  const auto d = std::make_shared<Data>(Data{Estimator({.history = history})});
+  const auto d = std::make_shared<Data>(Data{Preslip<S>(2, options)});
   const auto step = [=] {
-    benchmark::DoNotOptimize(d->preslip((*hands)[d->k % hands->size()], d->state));
+    const auto at = static_cast<std::size_t>(d->k) % hands->size();
+    benchmark::DoNotOptimize(d->preslip((*hands)[at]));
     ++d->k;
   };
   bench::add(
-      rule + ", " + name_of(scene) + ", history " + std::to_string(history) + "/" + search, 1,
-      memory.bytes(),
+      name, 1, memory.bytes(),
       [=] {
-        while (d->k < static_cast<std::size_t>(history)) {
+        while (d->k < history) {
           step();  // fill the history before timing
         }
         step();
       },
       [=, wrong = -1.0](auto& counters) mutable {
         if (wrong < 0) {
-          const auto& truth = true_answers<Rule>(scene, history);
-          const auto found = answers<Rule, Search, S>(scene, history);
+          const auto truth = true_answers(scene, options), found = answers<S>(scene, options);
           wrong = 0;
           for (std::size_t k = 0; k < truth.size(); ++k) {
-            const bool same = found[k].alarm == truth[k].alarm &&
-                              found[k].is_fresh == truth[k].is_fresh &&
-                              found[k].samples_ago == truth[k].samples_ago;
-            wrong += same ? 0 : 1 / static_cast<double>(truth.size());
+            wrong += found[k] == truth[k] ? 0 : 1 / static_cast<double>(truth.size());
           }
         }
         bench::note_errors(counters, "wrong answers", "of all", {wrong});
       });
 }
 
-template <class Rule>
-void add_searches(const std::string& rule) {
+void add_rule(const std::string& name, PreslipRule rule, PreslipRule printed) {
   for (const Scene scene : {Scene::quiet, Scene::no_pair, Scene::slipping}) {
     for (const Index history : {100, 1000}) {
-      add<Rule, Scan>(rule, "published: StackScan", scene, history);
-      add<Rule, Newest>(rule, "Preslip", scene, history);
+      const std::string group =
+          name + ", " + name_of(scene) + ", history " + std::to_string(history) + "/";
+      add(group + "published: the printed rule", printed, scene, history);
+      add(group + "Preslip", rule, scene, history);
       if (history == 100) {
-        add<Rule, Newest, float>(rule, "Preslip, float", scene, history);
+        add<float>(group + "Preslip, float", rule, scene, history);
       }
     }
   }
@@ -194,17 +183,16 @@ const Recordings& slips() {
         patch.phase = any(0, 6.28);
         scene.patches[static_cast<std::size_t>(p % 2)].push_back(patch);
       }
-      const TaxelFeatures<> features(
+      const TaxelFeatures<> finger(
           scene.rows, scene.cols,
-          TaxelOptions<>{
-              .sample_period_s = 1 / rate_hz, .longest_gap_s = 8 / rate_hz, .noise = scene.noise});
-      std::array fingers{features.start(), features.start()};
+          {.sample_period_s = 1 / rate_hz, .longest_gap_s = 8 / rate_hz, .noise = scene.noise});
+      std::array fingers{finger, finger};
       test::FoamSignal signal(scene, n);
       auto& hands = recordings.emplace_back();
       for (int k = 0; k < 140; ++k) {
         auto& hand = hands.emplace_back();
         for (std::size_t f = 0; f < 2; ++f) {
-          hand[f] = features(signal.finger(f, k / rate_hz), k / rate_hz, fingers[f]);
+          hand[f] = fingers[f](signal.finger(f, k / rate_hz), k / rate_hz);
         }
       }
     }
@@ -214,30 +202,28 @@ const Recordings& slips() {
 }
 
 /// Applies a rule to the samples of a recording one after the other.
-template <class Estimator>
 struct Watching {
-  Estimator preslip = Estimator();
-  typename Estimator::State state = preslip.start();
-  std::size_t k = 0;
+  explicit Watching(PreslipRule rule) : preslip(2, {.rule = rule}) {}
 
-  PreslipResult next(const std::vector<Hand>& hands) {
-    return preslip(hands[k++ % hands.size()], state);
+  bool alarms(const std::vector<Hand>& hands) {
+    return preslip(hands[k++ % hands.size()]) == PreslipStatus::preslip;
   }
+
+  Preslip<> preslip;
+  std::size_t k = 0;
 };
 
-template <class Rule, class Search>
-void add_detection(const std::string& name) {
-  using Estimator = typename Search::template Estimator<Rule, double>;
+void add_detection(const std::string& name, PreslipRule rule) {
   const bench::Memory memory;
-  const auto d = std::make_shared<Watching<Estimator>>();
+  const auto d = std::make_shared<Watching>(rule);
   const long bytes = memory.bytes();
   bench::add(
-      "detection/" + name, 1, bytes, [d] { benchmark::DoNotOptimize(d->next(slips().front())); },
-      [](auto& counters) {
+      "detection/" + name, 1, bytes, [d] { benchmark::DoNotOptimize(d->alarms(slips().front())); },
+      [rule](auto& counters) {
         std::vector<double> delays;
         for (const std::vector<Hand>& hands : slips()) {
-          Watching<Estimator> watching;
-          while (watching.k < hands.size() && !watching.next(hands).is_fresh) {
+          Watching watching(rule);
+          while (watching.k < hands.size() && !watching.alarms(hands)) {
           }
           const bool found = watching.k > slip_begins && watching.k < hands.size();
           const double windows = (static_cast<double>(watching.k - 1) - slip_begins) / 16;
@@ -271,56 +257,55 @@ const Loosened& loosened() {
     for (unsigned seed = 1; seed <= 8; ++seed) {
       const grip::FoamFingersSetup object;
       grip::FoamFingers hand(object, seed);
-      const TaxelFeatures features(object.rows, object.cols,
-                                   TaxelOptions<>{.pitch_mm = object.pitch_mm,
-                                                  .sample_period_s = 1 / object.rate_hz,
-                                                  .noise = object.noise_counts});
-      const LoosenUntilPreslip loosen(loosen_plan<double>());
-      std::array fingers{features.start(), features.start()};
-      auto search = loosen.start();
+      const TaxelFeatures<> finger(object.rows, object.cols,
+                                   {.pitch_mm = object.pitch_mm,
+                                    .sample_period_s = 1 / object.rate_hz,
+                                    .noise = object.noise_counts});
+      std::array fingers{finger, finger};
+      LoosenUntilPreslip loosen(loosen_plan<double>());
       auto& hands = runs.recordings.emplace_back();
       while (!hand.has_slipped()) {
-        hand.advance(loosen(PreslipStatus::steady, search).force_n);
+        hand.advance(loosen(PreslipStatus::steady).force_n);
         auto& samples = hands.emplace_back();
         for (std::size_t f = 0; f < 2; ++f) {
-          samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
+          samples[f] = fingers[f](hand.readings(f), hand.time_s());
         }
       }
-      runs.slip_force_n.push_back(search.command().force_n);
+      runs.slip_force_n.push_back(loosen.command().force_n);
     }
     return runs;
   }();
   return all;
 }
 
-template <class Rule, class S>
+template <class S>
 struct Loosening {
-  Watching<Preslip<Rule>> watching;
-  LoosenUntilPreslip<S> loosen{loosen_plan<S>()};
-  typename LoosenUntilPreslip<S>::State search = loosen.start();
+  explicit Loosening(PreslipRule rule) : watching(rule) {}
 
   HoldingCommand<S> next(const std::vector<Hand>& hands) {
-    const bool alarm = watching.next(hands).is_fresh;
-    return loosen(alarm ? PreslipStatus::preslip : PreslipStatus::steady, search);
+    return loosen(watching.alarms(hands) ? PreslipStatus::preslip : PreslipStatus::steady);
   }
+
+  Watching watching;
+  LoosenUntilPreslip<S> loosen{loosen_plan<S>()};
 };
 
-template <class Rule, class S>
-void add_loosening(const std::string& name) {
+template <class S>
+void add_loosening(const std::string& name, PreslipRule rule) {
   const bench::Memory memory;
-  const auto d = std::make_shared<Loosening<Rule, S>>();
+  const auto d = std::make_shared<Loosening<S>>(rule);
   const long bytes = memory.bytes();
   bench::add(
       "least force/" + name, 1, bytes,
       [d] { benchmark::DoNotOptimize(d->next(loosened().recordings[0])); },
-      [](auto& counters) {
+      [rule](auto& counters) {
         std::vector<double> errors;
         for (std::size_t n = 0; n < loosened().recordings.size(); ++n) {
-          Loosening<Rule, S> run;
+          Loosening<S> run(rule);
           for (std::size_t k = 0; k < loosened().recordings[n].size(); ++k) {
             (void)run.next(loosened().recordings[n]);
           }
-          const double warned_n = static_cast<double>(run.search.command().preslip_force_n);
+          const double warned_n = static_cast<double>(run.loosen.command().preslip_force_n);
           errors.push_back(warned_n / loosened().slip_force_n[n] - 1);
         }
         bench::note_errors(counters, "force at the warning", "share", errors);
@@ -337,14 +322,13 @@ struct Lifting {
     return p;
   }
   LiftWithRegrip<S> lift{plan()};
-  typename LiftWithRegrip<S>::State state = lift.start();
   int k = 0;
 
   HoldingCommand<S> next() {
-    if (is_end(state.command().phase)) {
-      state = lift.start();
+    if (is_end(lift.command().phase)) {
+      lift = LiftWithRegrip<S>(plan());
     }
-    return lift(++k % 25 == 0 ? PreslipStatus::preslip : PreslipStatus::steady, state);
+    return lift(++k % 25 == 0 ? PreslipStatus::preslip : PreslipStatus::steady);
   }
 };
 
@@ -375,16 +359,17 @@ void add_lift(const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  add_searches<GraspLift>("GraspLift, the default");
+  using enum PreslipRule;
+  add_rule("GraspLift, the default", grasp_lift, printed_grasp_lift);
   bench::add_streaming("GraspLift, the default, no pair, history 100");
-  add_searches<GraspOptimise>("GraspOptimise");
-  add_detection<GraspLift, Scan>("published: GraspLift, StackScan");
-  add_detection<GraspLift, Newest>("GraspLift, the default");
-  add_detection<GraspOptimise, Scan>("published: GraspOptimise, StackScan");
-  add_detection<GraspOptimise, Newest>("GraspOptimise");
-  add_loosening<GraspOptimise, double>("published: LoosenUntilPreslip, GraspOptimise, double");
-  add_loosening<GraspOptimise, float>("published: LoosenUntilPreslip, GraspOptimise, float");
-  add_loosening<GraspLift, double>("LoosenUntilPreslip, GraspLift, double");
+  add_rule("GraspOptimise", grasp_optimise, printed_grasp_optimise);
+  add_detection("published: GraspLift", printed_grasp_lift);
+  add_detection("GraspLift, the default", grasp_lift);
+  add_detection("published: GraspOptimise", printed_grasp_optimise);
+  add_detection("GraspOptimise", grasp_optimise);
+  add_loosening<double>("published: LoosenUntilPreslip, GraspOptimise, double", grasp_optimise);
+  add_loosening<float>("published: LoosenUntilPreslip, GraspOptimise, float", grasp_optimise);
+  add_loosening<double>("LoosenUntilPreslip, GraspLift, double", grasp_lift);
   add_lift<double>("double");
   add_lift<float>("float");
   return bench::run(argc, argv);

@@ -6,8 +6,6 @@
 // Errors, over twelve recordings with 0.08 to 0.32 waves a sample: of the vibrating taxel's rms,
 // against two passes in long double; of its waves, which are integers, against the true waves of a
 // window; of the centroid, against sums in double. "two passes": the direct method in double.
-#include "fingerpad/foam/taxel_features.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +21,7 @@
 #include "bench/support/run.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxels.hpp"
 
 using namespace fingerpad;
 
@@ -117,39 +116,28 @@ struct FeatureErrors {
 
 template <class Cell, class S>
 struct Hand {
-  using Features = TaxelFeatures<S>;
-  using Rule = Preslip<GraspLift, 3, S>;
-
   explicit Hand(Index window)
-      : features(rows, cols, options(window)), rule(PreslipOptions<S>{.history = 1000}) {}
-
-  static TaxelOptions<S> options(Index window) {
-    TaxelOptions<S> o;
-    o.window = window;
-    o.sample_period_s = S(1);
-    o.longest_gap_s = S(8);
-    return o;
-  }
+      : finger(rows, cols, {.window = window, .sample_period_s = 1, .longest_gap_s = 8}),
+        fingers{finger, finger, finger},
+        rule(3, {.history = 1000}) {}
 
   void step(const std::vector<Cell>& readings, bool with_rule) {
     n = n + 1 < period ? n + 1 : 0;
     time += 1;
     const StridedView<const Cell> taxels(readings.data() + n * rows * cols, rows, cols, cols);
     for (std::size_t f = 0; f < 3; ++f) {
-      samples[f] = features(taxels, time, fingers[f]);
+      samples[f] = fingers[f](taxels, time);
     }
     if (with_rule) {
-      result = rule(samples, history);
+      status = rule(samples);
     }
   }
 
-  Features features;
-  Rule rule;
-  std::array<typename Features::State, 3> fingers{features.start(), features.start(),
-                                                  features.start()};
-  typename Rule::State history = rule.start();
+  TaxelFeatures<S> finger;
+  std::array<TaxelFeatures<S>, 3> fingers;
+  Preslip<S> rule;
   std::array<FingerSample<S>, 3> samples;
-  PreslipResult result;
+  PreslipStatus status = PreslipStatus::cannot_tell;
   double time = 0;
   Index n = 0;
 };
@@ -159,7 +147,7 @@ template <class Cell, class S>
 void add_errors(double turn_rad, Index window, FeatureErrors& errors) {
   const auto readings = recording<Cell>(turn_rad);
   Hand<Cell, S> hand(window);
-  const double pitch_mm = static_cast<double>(hand.features.options().pitch_mm);
+  const double pitch_mm = hand.finger.options().pitch_mm;
   for (Index k = 0; k < 2 * period; ++k) {
     hand.step(readings, false);
     if (k < period || hand.n < window - 1) {

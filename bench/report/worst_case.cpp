@@ -19,7 +19,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
@@ -275,8 +275,7 @@ std::vector<Kind> of_traction() {
 }
 
 std::vector<Kind> of_taxels() {
-  static const TaxelFeatures<> features(16, 4);
-  static auto state = features.start();
+  static TaxelFeatures<> finger(16, 4);
   static double time_s = 0;
   static const auto usual = made<Image<double>>([](int k, test::Random&) {
     Image<double> taxels(16, 4, 100);
@@ -291,7 +290,7 @@ std::vector<Kind> of_taxels() {
     return taxels;
   });
   const auto call = [](const std::vector<Image<double>>& taxels) {
-    return [&](int k) { (void)features(taxels[variant(k)], time_s += 1 / 30.0, state); };
+    return [&](int k) { (void)finger(taxels[variant(k)], time_s += 1 / 30.0); };
   };
   return {{"one of 64 taxels vibrates", call(usual)}, {"readings of noise", call(noisy)}};
 }

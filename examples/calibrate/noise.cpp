@@ -9,7 +9,7 @@
 #include "calibrate/recordings.hpp"
 #include "fingerpad/adapt/dot_finder.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/io/failure.hpp"
 
@@ -80,7 +80,7 @@ Outcome dots(const Path& recording) {
 Outcome taxels(const Path& recording) {
   const replay::TaxelTable table = replay::read_taxels(recording / "taxels.csv");
   const auto sensor = replay::read_foam_sensor(recording / "sensor.json");
-  fingerpad::TaxelOptions<double> options = sensor.taxels;
+  fingerpad::TaxelOptions options = sensor.taxels;
   options.noise = 1;
   const std::size_t taxels = table.taxels();
   if (table.samples() > 1) {

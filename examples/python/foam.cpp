@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "python/arrays.hpp"
@@ -13,35 +14,38 @@ namespace python {
 namespace {
 
 using fingerpad::FingerSample;
+using fingerpad::PreslipRule;
 using fingerpad::PreslipStatus;
-using Options = fingerpad::FoamHand<>::Options;
-using Taxels = fingerpad::TaxelOptions<double>;
-using Rules = fingerpad::PreslipOptions<double>;
+using Taxels = fingerpad::TaxelOptions;
+using Rules = fingerpad::PreslipOptions;
 using Hand = fingerpad::FoamHand<>;
 
 Hand make_hand(const Count& rows, const Count& cols, const Taxels& taxels, const Rules& rules) {
-  Options options;
-  options.arrays.fill({count_of(rows, "rows"), count_of(cols, "cols")});
-  options.taxels = taxels;
-  options.rules = rules;
-  return Hand(options);
+  const fingerpad::TaxelFeatures<> finger(count_of(rows, "rows"), count_of(cols, "cols"), taxels);
+  return Hand({finger, finger}, rules);
 }
 
-Hand::Result feel(Hand& hand, const Array& readings, const Number& time_s) {
+/// Result of one sample of all fingers.
+struct Felt {
+  PreslipStatus status;
+  std::vector<FingerSample<double>> fingers;
+};
+
+Felt feel(Hand& hand, const Array& readings, const Number& time_s) {
   if (!PySequence_Check(readings.ptr()) || py::len(readings) != 2) {
     throw py::type_error("readings must be the arrays of two fingers, (left, right)");
   }
   const py::object left = readings[py::int_(0)], right = readings[py::int_(1)];
-  return hand(
-      std::array{view_of<double>(left, "readings[0]"), view_of<double>(right, "readings[1]")},
-      number_of(time_s, "time_s"));
+  const PreslipStatus status =
+      hand(std::array{view_of<double>(left, "readings[0]"), view_of<double>(right, "readings[1]")},
+           number_of(time_s, "time_s"));
+  return {status, {hand.fingers().begin(), hand.fingers().end()}};
 }
 
 }  // namespace
 
 void bind_foam(py::module_& module) {
-  bind_options<Taxels>(module, "TaxelOptions",
-                       "Evaluation of the taxels; see foam/taxel_options.hpp.")
+  bind_options<Taxels>(module, "TaxelOptions", "Evaluation of the taxels; see foam/taxels.hpp.")
       .def_readwrite("pitch_mm", &Taxels::pitch_mm)
       .def_readwrite("window", &Taxels::window)
       .def_readwrite("sample_period_s", &Taxels::sample_period_s)
@@ -49,8 +53,14 @@ void bind_foam(py::module_& module) {
       .def_readwrite("noise_factor", &Taxels::noise_factor)
       .def_readwrite("min_sum", &Taxels::min_sum)
       .def_readwrite("saturated_at", &Taxels::saturated_at);
+  py::enum_<PreslipRule>(module, "PreslipRule", "Which rule; see foam/preslip.hpp.")
+      .value("grasp_lift", PreslipRule::grasp_lift)
+      .value("grasp_optimise", PreslipRule::grasp_optimise)
+      .value("printed_grasp_lift", PreslipRule::printed_grasp_lift)
+      .value("printed_grasp_optimise", PreslipRule::printed_grasp_optimise);
   bind_options<Rules>(module, "PreslipOptions",
                       "Options of the pre-slip rules; see foam/preslip.hpp.")
+      .def_readwrite("rule", &Rules::rule)
       .def_readwrite("history", &Rules::history)
       .def_readwrite("min_waves", &Rules::min_waves)
       .def_readwrite("centroid_tolerance_mm", &Rules::centroid_tolerance_mm);
@@ -68,10 +78,11 @@ void bind_foam(py::module_& module) {
       .def_readonly("location", &FingerSample<double>::location)
       .def_readonly("waves", &FingerSample<double>::waves)
       .def_readonly("frequency_hz", &FingerSample<double>::frequency_hz);
-  py::class_<Hand::Result>(module, "FoamHandResult", "Result of one sample of all fingers.")
-      .def_property_readonly("ok", &Hand::Result::ok)
-      .def_readonly("status", &Hand::Result::status)
-      .def_readonly("fingers", &Hand::Result::fingers);
+  py::class_<Felt>(module, "FoamHandResult", "Result of one sample of all fingers.")
+      .def_property_readonly(
+          "ok", [](const Felt& felt) { return felt.status != PreslipStatus::cannot_tell; })
+      .def_readonly("status", &Felt::status)
+      .def_readonly("fingers", &Felt::fingers);
   py::class_<Hand>(module, "FoamHand",
                    "Two foam fingers; see pipeline/foam_hand.hpp. It stores past samples: use one\n"
                    "object for each hand and thread.")

@@ -13,10 +13,10 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/taxels.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/normal_force.hpp"
 #include "replay/io/failure.hpp"
@@ -398,7 +398,7 @@ Trial taxels() {
   constexpr int rows = 3, cols = 3, windows = 60;
   constexpr double noise = 3, period_s = 1.0 / 30;
   using Window = std::vector<Map>;
-  const fingerpad::TaxelOptions<double> options{};
+  const fingerpad::TaxelOptions options{};
   const auto length = static_cast<int>(options.window);
   const auto measure = [=](Chance& chance) {
     std::vector<Window> all(windows);

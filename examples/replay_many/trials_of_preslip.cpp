@@ -4,7 +4,7 @@
 // correlated.
 #include <array>
 
-#include "fingerpad/calibrate/preslip.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "trial_parts.hpp"
 
 namespace replay_many {
@@ -21,10 +21,8 @@ Trial preslip() {
     sample.status = waves > 0 ? fingerpad::TaxelStatus::vibrating : fingerpad::TaxelStatus::quiet;
     sample.center_x_mm = x_mm;
     sample.center_y_mm = 10;
-    sample.waves = waves;
     if (waves > 0) {
-      sample.location = taxel;
-      sample.add_vibration({waves, taxel, false});
+      sample.add_vibration(taxel, waves);
     }
     return sample;
   };
@@ -44,7 +42,7 @@ Trial preslip() {
     return lifts;
   };
   const auto fit = [](const std::vector<Lift>& lifts) {
-    fingerpad::PreslipCalibration<> calibration(10);
+    fingerpad::PreslipCalibration<> calibration(2, {.history = 10});
     for (const Lift& lift : lifts) {
       calibration.begin_recording();
       for (const Marked& sample : lift) {

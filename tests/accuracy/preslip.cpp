@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "fingerpad/foam/holding_force.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
-#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 #include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
@@ -26,40 +25,31 @@ using test::FoamSignal;
 
 namespace {
 
-/// Features and rule of both fingers.
-template <class Rule>
+/// The hand of a scene.
 class Chain {
  public:
-  Chain(const FoamScene& scene, double rate_hz, double longest_gap_s = 0)
-      : features_(scene.rows, scene.cols, options(scene, rate_hz, longest_gap_s)),
-        fingers_{features_.start(), features_.start()},
-        history_(rule_.start()) {}
+  Chain(PreslipRule rule, const FoamScene& scene, double rate_hz, double longest_gap_s = 0)
+      : finger_(scene.rows, scene.cols, options(scene, rate_hz, longest_gap_s)),
+        hand_({finger_, finger_}, {.rule = rule}) {}
 
   bool alarms(FoamSignal& signal, double time_s) { return alarms(signal, time_s, time_s); }
   /// The sample is taken at `time_s` and received at `received_s`.
   bool alarms(FoamSignal& signal, double time_s, double received_s) {
-    std::array<FingerSample<double>, 2> samples;
-    for (std::size_t f = 0; f < 2; ++f) {
-      samples[f] = features_(signal.finger(f, time_s), received_s, fingers_[f]);
-    }
-    return rule_(samples, history_).is_fresh;
+    const auto left = signal.finger(0, time_s), right = signal.finger(1, time_s);
+    return hand_(std::array{left, right}, received_s) == PreslipStatus::preslip;
   }
-  double window_s() const { return 16 * features_.options().sample_period_s; }
+  double window_s() const { return 16 * finger_.options().sample_period_s; }
 
  private:
-  static TaxelOptions<double> options(const FoamScene& scene,
-                                      double rate_hz,
-                                      double longest_gap_s) {
-    TaxelOptions<double> o;
+  static TaxelOptions options(const FoamScene& scene, double rate_hz, double longest_gap_s) {
+    TaxelOptions o;
     o.sample_period_s = 1 / rate_hz;
     o.longest_gap_s = longest_gap_s > 0 ? longest_gap_s : 8 / rate_hz;
     o.noise = scene.noise;
     return o;
   }
-  TaxelFeatures<> features_;
-  Preslip<Rule> rule_;
-  std::array<TaxelFeatures<>::State, 2> fingers_;
-  typename Preslip<Rule>::State history_;
+  TaxelFeatures<> finger_;
+  FoamHand<> hand_;
 };
 
 struct Detection {
@@ -92,8 +82,7 @@ FoamScene any_slip(std::mt19937& random, double rate_hz, int patches, Index side
   return scene;
 }
 
-template <class Rule>
-Detection detection(int scenes, int patches, Index side = 2) {
+Detection detection(PreslipRule rule, int scenes, int patches, Index side = 2) {
   Detection d;
   const double rates[] = {10, 31, 100, 1000};
   std::mt19937 random(17);
@@ -101,7 +90,7 @@ Detection detection(int scenes, int patches, Index side = 2) {
     const double rate_hz = rates[k % 4];
     const FoamScene scene = any_slip(random, rate_hz, patches, side);
     FoamSignal signal(scene, static_cast<unsigned>(k));
-    Chain<Rule> chain(scene, rate_hz);
+    Chain chain(rule, scene, rate_hz);
     bool is_early = false;
     double found_s = -1;
     for (int n = 0; n < 140 && found_s < 0; ++n) {
@@ -132,13 +121,12 @@ void show(const std::string& name, const Detection& d) {
   SUCCEED();
 }
 
-template <class Rule>
-int false_alarms(double minutes, double rate_hz, unsigned seed) {
+int false_alarms(PreslipRule rule, double minutes, double rate_hz, unsigned seed) {
   FoamScene scene;
   scene.rows = 8;
   scene.drift = 0.3;
   FoamSignal signal(scene, seed);
-  Chain<Rule> chain(scene, rate_hz);
+  Chain chain(rule, scene, rate_hz);
   int alarms = 0;
   for (int n = 0; n < minutes * 60 * rate_hz; ++n) {
     alarms += chain.alarms(signal, n / rate_hz) ? 1 : 0;
@@ -156,28 +144,28 @@ TEST_CASE("pre-slip of known signals: slip is found", "[preslip]") {
     CHECK(d.early == 0);
     CHECK(d.latest_windows <= windows);
   };
-  check("grasp-optimise, one patch", detection<GraspOptimise>(120, 1), 0.3);       // 0.25
-  check("grasp-optimise, three patches", detection<GraspOptimise>(120, 3), 0.25);  // 0.19
-  check("grasp-lift, one patch", detection<GraspLift>(120, 1), 0.65);              // 0.56
-  check("grasp-lift, three patches", detection<GraspLift>(120, 3), 0.25);          // 0.19
+  check("grasp-optimise, one patch", detection(PreslipRule::grasp_optimise, 120, 1), 0.3);  // 0.25
+  check("grasp-optimise, three patches", detection(PreslipRule::grasp_optimise, 120, 3),
+        0.25);                                                                           // 0.19
+  check("grasp-lift, one patch", detection(PreslipRule::grasp_lift, 120, 1), 0.65);      // 0.56
+  check("grasp-lift, three patches", detection(PreslipRule::grasp_lift, 120, 3), 0.25);  // 0.19
 }
 
 TEST_CASE("pre-slip of known signals: one taxel of each finger is enough", "[preslip]") {
   // as printed the location of the strongest taxel never differs: this rule cannot detect it
-  const Detection printed = detection<published::GraspOptimise>(40, 1, 1);
+  const Detection printed = detection(PreslipRule::printed_grasp_optimise, 40, 1, 1);
   show("grasp-optimise as printed, patches of one taxel", printed);
   CHECK(printed.found <= 2);
-  for (const Detection& d : {detection<GraspOptimise>(40, 1, 1), detection<GraspLift>(40, 1, 1)}) {
+  for (const Detection& d : {detection(PreslipRule::grasp_optimise, 40, 1, 1),
+                             detection(PreslipRule::grasp_lift, 40, 1, 1)}) {
     show("patches of one taxel", d);
     CHECK(d.found == 40);
     CHECK(d.early == 0);
   }
 }
 
-TEMPLATE_TEST_CASE("pre-slip of known signals: gaps delay no alarm by more than two samples",
-                   "[preslip]",
-                   GraspLift,
-                   GraspOptimise) {
+TEST_CASE("pre-slip of known signals: gaps delay no alarm by more than two samples", "[preslip]") {
+  const PreslipRule rule = GENERATE(PreslipRule::grasp_lift, PreslipRule::grasp_optimise);
   // samples are lost for 0.3 to 1.3 s, right before the slip and after its onset, on two clocks:
   // that of the sensor, and that of a receiver that is late by up to a period
   std::mt19937 random(23);
@@ -187,7 +175,7 @@ TEMPLATE_TEST_CASE("pre-slip of known signals: gaps delay no alarm by more than 
     std::array<int, 3> first = {-1, -1, -1};  // without gaps, and with gaps on either clock
     for (std::size_t clock = 0; clock < 3; ++clock) {
       FoamSignal signal(scene, static_cast<unsigned>(n));
-      Chain<TestType> chain(scene, rate_hz, 2);
+      Chain chain(rule, scene, rate_hz, 2);
       std::mt19937 late(static_cast<unsigned>(n));
       double gaps_s = 0;
       for (int k = 0; k < 140 && first[clock] < 0; ++k) {
@@ -209,8 +197,8 @@ TEMPLATE_TEST_CASE("pre-slip of known signals: gaps delay no alarm by more than 
 
 TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip]") {
   // the goal is at most one alarm in ten minutes
-  CHECK(false_alarms<GraspOptimise>(20, 31, 1) == 0);
-  CHECK(false_alarms<GraspLift>(20, 31, 2) == 0);
+  CHECK(false_alarms(PreslipRule::grasp_optimise, 20, 31, 1) == 0);
+  CHECK(false_alarms(PreslipRule::grasp_lift, 20, 31, 2) == 0);
 }
 
 namespace {
@@ -238,36 +226,32 @@ struct Loosening {
 
 /// Loosens the grip on a simulated object until it slips as a whole, and counts the alarms on the
 /// way.
-template <class Rule>
-Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed, Onsets& onsets) {
+Loosening loosened(PreslipRule rule,
+                   const grip::FoamFingersSetup& object,
+                   unsigned seed,
+                   Onsets& onsets) {
   grip::FoamFingers hand(object, seed);
-  const TaxelFeatures<> features(object.rows, object.cols,
-                                 TaxelOptions<>{.pitch_mm = object.pitch_mm,
-                                                .sample_period_s = 1 / object.rate_hz,
-                                                .noise = object.noise_counts});
-  const Preslip<Rule> rule;
-  const LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
-                                     .min_force_n = 0.1,
-                                     .step_n = 0.2,
-                                     .settle_samples = 4,
-                                     .watch_samples = 36,
-                                     .until_slipped = true});
-  std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
-  auto history = rule.start();
-  auto search = loosen.start();
-  HoldingCommand<double> command = search.command();
+  const TaxelFeatures<> finger(object.rows, object.cols,
+                               {.pitch_mm = object.pitch_mm,
+                                .sample_period_s = 1 / object.rate_hz,
+                                .noise = object.noise_counts});
+  FoamHand<> foam({finger, finger}, {.rule = rule});
+  LoosenUntilPreslip<> loosen({.first_force_n = object.first_force_n,
+                               .min_force_n = 0.1,
+                               .step_n = 0.2,
+                               .settle_samples = 4,
+                               .watch_samples = 36,
+                               .until_slipped = true});
+  HoldingCommand<double> command = loosen.command();
   Index since_slip = 1000;
   bool is_onset = false, is_found = false;
   while (!is_end(command.phase)) {
     hand.advance(command.force_n);
-    std::array<FingerSample<double>, 2> samples;
-    for (std::size_t f = 0; f < 2; ++f) {
-      samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
-    }
-    const PreslipStatus status = rule(samples, history).status;
+    const PreslipStatus status =
+        foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
     since_slip = hand.slipped_mm(0) > 0 || hand.slipped_mm(1) > 0 ? 0 : since_slip + 1;
     const bool was_onset = is_onset;
-    is_onset = since_slip < features.options().window;
+    is_onset = since_slip < finger.options().window;
     is_found = is_found && was_onset;
     ++onsets.samples;
     onsets.in_onset += is_onset ? 1 : 0;
@@ -278,20 +262,19 @@ Loosening loosened(const grip::FoamFingersSetup& object, unsigned seed, Onsets& 
       onsets.found += is_onset && !is_found ? 1 : 0;
       is_found = is_onset;
     }
-    command = loosen(hand.has_slipped() ? PreslipStatus::slipped : status, search);
+    command = loosen(hand.has_slipped() ? PreslipStatus::slipped : status);
   }
   return {command, hand.force_n()};
 }
 
-template <class Rule>
-Onsets every_loosening_is_warned_of(const std::string& name) {
+Onsets every_loosening_is_warned_of(PreslipRule rule, const std::string& name) {
   std::string text = name + ": steps of warning";
   Onsets onsets;
   for (unsigned seed = 0; seed < 12; ++seed) {
     grip::FoamFingersSetup object;
     object.friction.factor = 0.25 + 0.05 * (seed % 4);
     object.weight_n = 2.5 + 0.7 * (seed % 3);
-    const Loosening run = loosened<Rule>(object, seed, onsets);
+    const Loosening run = loosened(rule, object, seed, onsets);
     CAPTURE(seed);
     CHECK(run.end.phase == SearchPhase::slipped);
     CHECK(run.end.warning_steps >= 1);
@@ -311,10 +294,11 @@ Onsets every_loosening_is_warned_of(const std::string& name) {
 
 TEST_CASE("pre-slip of a simulated object: a warning before it slips, and only where a taxel slips",
           "[preslip]") {
-  const Onsets optimise = every_loosening_is_warned_of<GraspOptimise>("grasp-optimise");
-  const Onsets lift = every_loosening_is_warned_of<GraspLift>("grasp-lift");
-  every_loosening_is_warned_of<published::GraspOptimise>("grasp-optimise as printed");
-  every_loosening_is_warned_of<published::GraspLift>("grasp-lift as printed");
+  const Onsets optimise =
+      every_loosening_is_warned_of(PreslipRule::grasp_optimise, "grasp-optimise");
+  const Onsets lift = every_loosening_is_warned_of(PreslipRule::grasp_lift, "grasp-lift");
+  every_loosening_is_warned_of(PreslipRule::printed_grasp_optimise, "grasp-optimise as printed");
+  every_loosening_is_warned_of(PreslipRule::printed_grasp_lift, "grasp-lift as printed");
   // a rule that always alarms has the precision of chance; one that never alarms has no recall
   CHECK(lift.chance() < 0.9);
   CHECK(lift.precision() >= 0.99);
@@ -334,8 +318,7 @@ struct Lift {
 
 /// The paper's second experiment: an object stands on a surface and is gripped with little force,
 /// lifted and put back. Its weight passes to the fingers within 5 mm.
-template <class Rule>
-Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
+Lift lifted(PreslipRule rule, grip::FoamFingersSetup object, unsigned seed) {
   const LiftOptions<double> plan{.first_force_n = 1,
                                  .max_force_n = 20,
                                  .force_step_n = 0.25,
@@ -345,28 +328,21 @@ Lift lifted(grip::FoamFingersSetup object, unsigned seed) {
   object.contact_radius_mm *= std::cbrt(plan.first_force_n / object.first_force_n);
   object.first_force_n = plan.first_force_n;
   grip::FoamFingers hand(object, seed, 0);
-  const TaxelFeatures<> features(object.rows, object.cols,
-                                 TaxelOptions<>{.pitch_mm = object.pitch_mm,
-                                                .sample_period_s = 1 / object.rate_hz,
-                                                .noise = object.noise_counts});
-  const Preslip<Rule> rule;
-  const LiftWithRegrip<> lift(plan);
-  std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
-  auto history = rule.start();
-  auto search = lift.start();
-  HoldingCommand<double> command = search.command();
+  const TaxelFeatures<> finger(object.rows, object.cols,
+                               {.pitch_mm = object.pitch_mm,
+                                .sample_period_s = 1 / object.rate_hz,
+                                .noise = object.noise_counts});
+  FoamHand<> foam({finger, finger}, {.rule = rule});
+  LiftWithRegrip<> lift(plan);
+  HoldingCommand<double> command = lift.command();
   const auto look = [&](double height_mm) {
     hand.carry(std::clamp(height_mm / 5, 0.0, 1.0));
     hand.advance(command.force_n);
-    std::array<FingerSample<double>, 2> samples;
-    for (std::size_t f = 0; f < 2; ++f) {
-      samples[f] = features(hand.readings(f), hand.time_s(), fingers[f]);
-    }
-    return rule(samples, history).status;
+    return foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
   };
   for (int k = 0; k < 100000 && !is_end(command.phase); ++k) {
     const PreslipStatus status = look(command.height_mm);
-    command = lift(hand.has_slipped() ? PreslipStatus::slipped : status, search);
+    command = lift(hand.has_slipped() ? PreslipStatus::slipped : status);
   }
   Lift end{command, hand.least_force_n()};
   for (double height_mm = command.height_mm; height_mm > 0; height_mm -= 0.02) {
@@ -385,7 +361,7 @@ TEST_CASE("grasp-lift-replace: a simulated object is lifted with little more tha
     grip::FoamFingersSetup object;
     object.friction.factor = 0.25 + 0.05 * (seed % 4);
     object.weight_n = 2.5 + 0.7 * (seed % 3);
-    const Lift lift = lifted<GraspLift>(object, seed);
+    const Lift lift = lifted(PreslipRule::grasp_lift, object, seed);
     CAPTURE(seed);
     CHECK(lift.end.phase == SearchPhase::lifted);
     CHECK_FALSE(lift.has_slipped);

@@ -22,7 +22,7 @@
 #include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/image/curvature.hpp"
@@ -173,22 +173,21 @@ TEST_CASE("six-axis force from every grid", "[adapt]") {
 }
 
 TEST_CASE("taxel features from every grid", "[adapt]") {
-  const TaxelFeatures<> features(16, 4, TaxelOptions<>{});
   const auto readings = [](int k) {
     test::Image<double> taxels(16, 4, 500.0);
     taxels(3, 1) += 60 * std::sin(0.9 * k);
     taxels(9, 2) += 0.4 * k;
     return taxels;
   };
-  auto begun = features.start();
+  TaxelFeatures<> begun(16, 4);
   for (int k = 0; k < 40; ++k) {
-    (void)features(readings(k), 0.01 * k, begun);
+    (void)begun(readings(k), 0.01 * k);
   }
   auto state = begun;
-  const auto truth = features(readings(40), 0.4, state);
+  const auto truth = state(readings(40), 0.4);
   on_every_grid<double>(readings(40), [&](const auto& taxels) {
     auto copy = begun;
-    const auto r = features(taxels, 0.4, copy);
+    const auto r = copy(taxels, 0.4);
     CHECK(r.status == truth.status);
     CHECK(same_bits(r.center_x_mm, truth.center_x_mm));
     CHECK(same_bits(r.center_y_mm, truth.center_y_mm));

@@ -12,10 +12,9 @@
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
-#include "fingerpad/calibrate/preslip.hpp"
-#include "fingerpad/calibrate/taxels.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -151,22 +150,20 @@ struct FreePadByPitch {
 struct PreslipThresholds {
   template <class S>
   Results<S> operator()(const S& p) const {
-    PreslipCalibration<GraspLift, 1, S> calibration(10);
+    PreslipCalibration<S> calibration(1, {.history = 10});
     for (int t = 0; t < 200; ++t) {
       const bool onset = t % 40 >= 30;
       FingerSample<S> sample;
       sample.status = TaxelStatus::vibrating;
       sample.center_x_mm = sample.center_y_mm = S(0);
       sample.sum = S(100) * p;
-      sample.waves = onset ? 3 : 0;
-      sample.location = 0;
-      sample.add_vibration({sample.waves, 0});
+      sample.add_vibration(0, onset ? 3 : 0);
       sample.frequency_hz = S(onset ? 40 : 0);
-      calibration.add({sample}, onset);
+      calibration.add(std::array{sample}, onset);
     }
     const auto fit = calibration.fit();
     return {S(static_cast<int>(fit.found)), S(static_cast<int>(fit.alarms)),
-            fit.options.centroid_tolerance_mm};
+            S(fit.options.centroid_tolerance_mm)};
   }
 };
 

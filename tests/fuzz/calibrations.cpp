@@ -13,7 +13,7 @@
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;
@@ -96,7 +96,7 @@ void try_absorption(Input& in) {
 
 void try_taxels(Input& in) {
   const Index rows = in.whole(0, 4), cols = in.whole(0, 4);
-  TaxelOptions<double> options;
+  TaxelOptions options;
   options.window = in.whole(2, 20);
   TaxelNoiseCalibration calibration(rows, cols, options);
   double time_s = 0;

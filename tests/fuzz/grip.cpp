@@ -63,11 +63,11 @@ void try_grip(Input& in) {
 
 template <class Search>
 void follow(Input& in, const Search& search, double least_n, double most_n) {
-  auto state = search.start();
+  auto state = search;
   for (Index samples = in.whole(1, 400); samples > 0; --samples) {
     const HoldingCommand<double> before = state.command();
     const auto signal = static_cast<PreslipStatus>(in.whole(0, 3));
-    const auto command = fuzz::frame([&] { return search(signal, state); });
+    const auto command = fuzz::frame([&] { return state(signal); });
     require(command.force_n >= least_n && command.force_n <= most_n,
             "a force is within its limits");
     require(!is_end(before.phase) ||

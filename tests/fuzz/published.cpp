@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The printed forms on any input: what they tell is finite, and the same frame gives the same bits.
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -9,7 +8,6 @@
 #include "fingerpad/published/depth.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/published/object_motion.hpp"
-#include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fuzz/dots.hpp"
 
@@ -124,33 +122,11 @@ void try_friction(Input& in) {
   }
 }
 
-void try_preslip(Input& in) {
-  auto options = published::preslip_options<double>();
-  options.history = in.whole(0, 30);
-  options.centroid_tolerance_mm = in.number(0, 1);
-  const auto rule = published::grasp_lift(options);
-  auto state = rule.start();
-  for (Index samples = in.whole(1, 60); samples > 0; --samples) {
-    std::array<FingerSample<double>, 2> fingers;
-    for (auto& finger : fingers) {
-      finger.status = static_cast<TaxelStatus>(in.whole(0, 2));
-      finger.center_x_mm = in.number(-10, 10);
-      finger.center_y_mm = in.number(-10, 10);
-      for (Index k = in.whole(0, 20); k > 0; --k) {
-        finger.add_vibration({in.whole(0, 20), in.whole(-1, 60), in.flag()});
-      }
-    }
-    const auto seen = fuzz::frame([&] { return rule(fingers, state); });
-    require(!seen.alarm || (seen.samples_ago >= 0 && seen.samples_ago <= options.history),
-            "an alarm is of a stored sample");
-  }
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    switch (in.whole(0, 5)) {
+    switch (in.whole(0, 4)) {
       case 0:
         return try_depth(in);
       case 1:
@@ -159,10 +135,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return try_stick_ratio(in);
       case 3:
         return try_motion(in);
-      case 4:
-        return try_friction(in);
       default:
-        return try_preslip(in);
+        return try_friction(in);
     }
   });
 }

@@ -8,11 +8,8 @@
 #include <cstdint>
 #include <limits>
 #include <random>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "fingerpad/published/preslip.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 
@@ -20,7 +17,7 @@ using namespace fingerpad;
 
 namespace {
 
-using Options = PreslipOptions<double>;
+using Options = PreslipOptions;
 template <std::size_t Fingers, class S = double>
 using Hand = std::array<FingerSample<S>, Fingers>;
 constexpr double largest = (std::numeric_limits<double>::max)();
@@ -31,6 +28,9 @@ template <class S = double>
 FingerSample<S> felt(Index location, Index waves, double x_mm = 0, double y_mm = 0) {
   FingerSample<S> sample;
   sample.status = TaxelStatus::vibrating;
+  if (location >= 0) {
+    sample.add_vibration(location, waves);
+  }
   sample.location = location;
   sample.waves = waves;
   sample.center_x_mm = S(x_mm);
@@ -38,35 +38,19 @@ FingerSample<S> felt(Index location, Index waves, double x_mm = 0, double y_mm =
   return sample;
 }
 
-bool equal(const PreslipResult& a, const PreslipResult& b) {
-  return a.alarm == b.alarm && a.is_fresh == b.is_fresh && a.samples_ago == b.samples_ago;
+template <class Fingers>
+bool holds(PreslipRule rule, const Fingers& older, const Fingers& later, Options options = {}) {
+  options.rule = rule;
+  return is_preslip(older, later, options);
 }
 
-/// Number of samples in which both searches differ. Sample k is hand(k).
-template <class Rule, std::size_t Fingers, class Make>
-int differences(int samples, const Options& options, const Make& hand) {
-  const Preslip<Rule, Fingers> newest(options);
-  const published::StackScan<Rule, Fingers> whole(options);
-  auto of_newest = newest.start();
-  auto of_whole = whole.start();
+/// The number of samples with an alarm. Sample k is hand(k).
+template <class Make>
+int alarms(int samples, Index history, const Make& hand, PreslipRule rule) {
+  Preslip<> preslip(2, {.rule = rule, .history = history});
   int count = 0;
   for (int k = 0; k < samples; ++k) {
-    const Hand<Fingers> now = hand(k);
-    count += equal(newest(now, of_newest), whole(now, of_whole)) ? 0 : 1;
-  }
-  return count;
-}
-
-/// The number of samples with an alarm, and with a fresh one.
-template <class Rule, std::size_t Fingers, class Make>
-std::pair<int, int> alarms(int samples, const Options& options, const Make& hand) {
-  const Preslip<Rule, Fingers> preslip(options);
-  auto state = preslip.start();
-  std::pair<int, int> count{0, 0};
-  for (int k = 0; k < samples; ++k) {
-    const PreslipResult result = preslip(hand(k), state);
-    count.first += result.alarm ? 1 : 0;
-    count.second += result.is_fresh ? 1 : 0;
+    count += preslip(hand(k)) == PreslipStatus::preslip ? 1 : 0;
   }
   return count;
 }
@@ -86,30 +70,28 @@ class Bits {
 
 TEST_CASE("pre-slip: a hundred thousand samples alike", "[preslip]") {
   constexpr int samples = 100000;
-  const Options options{.history = 50};
+  const PreslipRule optimise = PreslipRule::printed_grasp_optimise;
   const auto alike = [](int) { return Hand<2>{felt(3, 5), felt(4, 5)}; };
-  CHECK(alarms<published::GraspOptimise, 2>(samples, options, alike) == std::pair{0, 0});
-  CHECK(alarms<published::GraspLift, 2>(samples, options, alike) == std::pair{0, 0});
+  CHECK(alarms(samples, 50, alike, optimise) == 0);
+  CHECK(alarms(samples, 50, alike, PreslipRule::printed_grasp_lift) == 0);
   // two alternating places: from the second sample on, each makes a pair with the previous one
   const auto in_turn = [](int k) { return Hand<2>{felt(k % 2, 5), felt(1 - k % 2, 5)}; };
-  CHECK(alarms<published::GraspOptimise, 2>(samples, options, in_turn) ==
-        std::pair{samples - 1, samples - 1});
+  CHECK(alarms(samples, 50, in_turn, optimise) == samples - 1);
   // a wave every 60 samples, each at another place: the history never holds two of them
   const auto seldom = [](int k) {
     const Index location = k % 60 == 0 ? k / 60 % 7 : FingerSample<>::no_location;
     return Hand<2>{felt(location, 5), felt(location, 5)};
   };
-  CHECK(alarms<published::GraspOptimise, 2>(samples, options, seldom) == std::pair{0, 0});
-  const Options longer{.history = 61};  // now it does: each meets the previous one for one sample
-  const int pairs = (samples - 1) / 60;
-  CHECK(alarms<published::GraspOptimise, 2>(samples, longer, seldom) == std::pair{pairs, pairs});
+  CHECK(alarms(samples, 50, seldom, optimise) == 0);
+  // now it does: each meets the previous one for one sample
+  CHECK(alarms(samples, 61, seldom, optimise) == (samples - 1) / 60);
 }
 
 TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   const auto lift = [](double a_mm, double b_mm, double tolerance_mm) {
     const Options options{.centroid_tolerance_mm = tolerance_mm};
-    return is_preslip<published::GraspLift>(Hand<1>{felt(1, 1, a_mm, 0)},
-                                            Hand<1>{felt(2, 2, b_mm, 0)}, options);
+    return holds(PreslipRule::printed_grasp_lift, Hand<1>{felt(1, 1, a_mm, 0)},
+                 Hand<1>{felt(2, 2, b_mm, 0)}, options);
   };
   CHECK(lift(largest, -largest, 1));        // their difference is infinite
   CHECK(lift(-largest, largest, largest));  // and beyond any tolerance
@@ -122,25 +104,36 @@ TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   CHECK_FALSE(lift(none, 0, 0));
 }
 
-TEST_CASE("pre-slip: both searches agree at the ends of the range", "[preslip]") {
+TEST_CASE("pre-slip: the newest sample is compared with all others at the ends of the range",
+          "[preslip]") {
   const double ends[] = {0,    -0.0,     5e-324, -5e-324,     1e-300,  0.05,  -0.05,     0.0500001,
                          0.15, 1e8,      -1e8,   1e8 + 0.049, 1e8 - 1, 1e300, -largest,  largest,
                          none, infinity, 1,      -infinity,   1e9,     -1e9,  123456.75, 5e7};
   const Index far[] = {(std::numeric_limits<Index>::min)(), -2, -1, 0, 1, 2, 63, 64, 65, 70,
                        (std::numeric_limits<Index>::max)()};
   for (const double tolerance_mm : {5e-324, 1e-300, 0.1, 1.0, 1e300, largest}) {
-    CAPTURE(tolerance_mm);
-    const Options options{.history = 9, .centroid_tolerance_mm = tolerance_mm};
-    Bits bits(11);
-    const auto hand = [&](int) {
-      Hand<2> now;
-      for (auto& sample : now) {
-        sample = felt(far[bits(0, 10)], far[bits(0, 10)], ends[bits(0, 23)], ends[bits(0, 23)]);
+    for (const PreslipRule rule :
+         {PreslipRule::printed_grasp_lift, PreslipRule::printed_grasp_optimise}) {
+      CAPTURE(tolerance_mm, name_of(rule));
+      const Options options{.rule = rule, .history = 9, .centroid_tolerance_mm = tolerance_mm};
+      Preslip<> preslip(2, options);
+      Bits bits(11);
+      std::vector<Hand<2>> history;
+      int differ = 0;
+      for (int k = 0; k < 2000; ++k) {
+        Hand<2> now;
+        for (auto& sample : now) {
+          sample = felt(far[bits(0, 10)], far[bits(0, 10)], ends[bits(0, 23)], ends[bits(0, 23)]);
+        }
+        bool pairs = false;
+        for (std::size_t ago = 1; ago < 9 && ago <= history.size(); ++ago) {
+          pairs = pairs || is_preslip(history[history.size() - ago], now, options);
+        }
+        differ += (preslip(now) == PreslipStatus::preslip) == pairs ? 0 : 1;
+        history.push_back(now);
       }
-      return now;
-    };
-    CHECK(differences<published::GraspLift, 2>(2000, options, hand) == 0);
-    CHECK(differences<published::GraspOptimise, 2>(2000, options, hand) == 0);
+      CHECK(differ == 0);
+    }
   }
 }
 
@@ -151,12 +144,10 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
                    test::Digits50,
                    test::Dual<double>) {
   using S = TestType;
-  const auto check = [](auto rule) {
-    using Rule = decltype(rule);
-    const Preslip<Rule, 2, S> preslip({.history = 12, .centroid_tolerance_mm = S(0.125)});
-    const Preslip<Rule, 2> reference({.history = 12, .centroid_tolerance_mm = 0.125});
-    auto state = preslip.start();
-    auto of_reference = reference.start();
+  const auto check = [](PreslipRule rule) {
+    const Options options{.rule = rule, .history = 12, .centroid_tolerance_mm = 0.125};
+    Preslip<S> preslip(2, options);
+    Preslip<> reference(2, options);
     Bits bits(5);
     int alarms = 0, differ = 0;
     Hand<2, S> last;
@@ -171,13 +162,12 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
         now[f] = felt<S>(location, waves, x, y);
         reference_now[f] = felt(location, waves, x, y);
       }
-      const PreslipResult result = reference(reference_now, of_reference);
-      differ += equal(preslip(now, state), result) ? 0 : 1;
-      differ += is_preslip<Rule>(last, now, preslip.options()) ==
-                        is_preslip<Rule>(reference_last, reference_now, reference.options())
+      const PreslipStatus status = reference(reference_now);
+      differ += preslip(now) == status ? 0 : 1;
+      differ += is_preslip(last, now, options) == is_preslip(reference_last, reference_now, options)
                     ? 0
                     : 1;
-      alarms += result.alarm ? 1 : 0;
+      alarms += status == PreslipStatus::preslip ? 1 : 0;
       last = now;
       reference_last = reference_now;
     }
@@ -185,51 +175,34 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
     CHECK(alarms > 10);
     CHECK(alarms < 400);
   };
-  check(published::GraspOptimise());
-  check(published::GraspLift());
+  check(PreslipRule::printed_grasp_optimise);
+  check(PreslipRule::printed_grasp_lift);
 }
 
 TEST_CASE("pre-slip: a derivative that is not a number changes nothing", "[preslip]") {
   using S = test::Dual<double>;
   auto older = felt<S>(1, 1, 0, 0), later = felt<S>(2, 2, 1, 0);
   later.center_x_mm.d = none;
-  CHECK(is_preslip<published::GraspLift>(Hand<1, S>{older}, Hand<1, S>{later}));
+  CHECK(holds(PreslipRule::printed_grasp_lift, Hand<1, S>{older}, Hand<1, S>{later}));
 }
 
-TEMPLATE_TEST_CASE("pre-slip: the longest history",
-                   "[preslip]",
-                   published::GraspOptimise,
-                   published::GraspLift) {
-  const Preslip<TestType, 1> preslip({.history = 100000});
-  auto state = preslip.start();
-  CHECK_FALSE(preslip({felt(1, 1, 0, 0)}, state).alarm);
-  CHECK_FALSE(preslip({felt(FingerSample<>::no_location, 0, none, none)}, state).alarm);
-  const auto result =
-      preslip({felt(2, std::is_same_v<TestType, published::GraspOptimise> ? 1 : 2, 1, 1)}, state);
-  CHECK(result.is_fresh);
-  CHECK(result.samples_ago == 2);
-  state.reset();
-  CHECK_FALSE(preslip({felt(3, 3, 0, 0)}, state).alarm);
-}
-
-TEMPLATE_TEST_CASE("pre-slip: a pair as old as a history",
-                   "[preslip]",
-                   published::GraspOptimise,
-                   published::GraspLift) {
-  const Index history = 3000;
-  const Preslip<TestType, 1> preslip({.history = history});
-  const auto first = felt(1, 1, 0, 0);
-  const auto last = felt(2, std::is_same_v<TestType, published::GraspOptimise> ? 1 : 2, 1, 1);
-  const auto silent = felt(FingerSample<>::no_location, 0, none, none);
-  for (const Index between : {history - 2, history - 1}) {
-    auto state = preslip.start();
-    (void)preslip({first}, state);
-    for (Index k = 0; k < between; ++k) {
-      (void)preslip({silent}, state);
+TEST_CASE("pre-slip: a pair as old as a history", "[preslip]") {
+  const auto first = felt(1, 1, 0, 0), silent = felt(FingerSample<>::no_location, 0, none, none);
+  for (const Index history : {3000, 100000}) {
+    for (const PreslipRule rule :
+         {PreslipRule::printed_grasp_lift, PreslipRule::printed_grasp_optimise}) {
+      Preslip<> preslip(1, {.rule = rule, .history = history});
+      const auto last = felt(2, rule == PreslipRule::printed_grasp_optimise ? 1 : 2, 1, 1);
+      for (const Index between : {history - 2, history - 1}) {
+        preslip.reset();
+        (void)preslip(Hand<1>{first});
+        for (Index k = 0; k < between; ++k) {
+          (void)preslip(Hand<1>{silent});
+        }
+        const PreslipStatus status = preslip(Hand<1>{last});
+        CHECK((status == PreslipStatus::preslip) == (between == history - 2));
+        CHECK(preslip(Hand<1>{silent}) == PreslipStatus::steady);
+      }
     }
-    const auto result = preslip({last}, state);
-    CHECK(result.alarm == (between == history - 2));
-    CHECK(result.samples_ago == (result.alarm ? history - 1 : PreslipResult::none));
-    CHECK_FALSE(preslip({silent}, state).alarm);
   }
 }

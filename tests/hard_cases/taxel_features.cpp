@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Arrays on which running sums lose digits, and long recordings.
-#include "fingerpad/foam/taxel_features.hpp"
-
 #include <cmath>
 #include <limits>
 #include <random>
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/foam/taxels.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -36,13 +35,12 @@ double deviation_by_hand(const std::vector<double>& readings, std::size_t n) {
   return std::sqrt(squares / length);
 }
 
-template <class S>
-TaxelOptions<S> options(Index window) {
-  TaxelOptions<S> o;
+TaxelOptions options(Index window) {
+  TaxelOptions o;
   o.window = window;
-  o.sample_period_s = S(1);
-  o.longest_gap_s = S(10);
-  o.noise = S(0);
+  o.sample_period_s = 1;
+  o.longest_gap_s = 10;
+  o.noise = 0;
   return o;
 }
 
@@ -56,8 +54,7 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
   // The bound is that of one window at any length.
   using S = TestType;
   const Index window = GENERATE(8, 64);
-  const TaxelFeatures<S> features(1, 1, options<S>(window));
-  auto state = features.start();
+  TaxelFeatures<S> finger(1, 1, options(window));
   std::mt19937 random(5);
   std::uniform_int_distribution<int> step(-8, 8);
   std::vector<double> readings;
@@ -67,7 +64,7 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
     level = level > 4400 || level < 3600 ? 4000 : level;
     const double reading = level + (k % 4 < 2 ? 8 : -8);
     readings.push_back(reading);
-    const auto sample = features(Image<S>(1, 1, static_cast<S>(reading)), k, state);
+    const auto sample = finger(Image<S>(1, 1, static_cast<S>(reading)), k);
     if (k % 7 == 0 && k > 100) {
       const double exact = deviation_by_hand(readings, static_cast<std::size_t>(window));
       worst = std::max(worst, std::fabs(static_cast<double>(sample.deviation) / exact - 1));
@@ -82,15 +79,14 @@ TEMPLATE_TEST_CASE("taxel features: a huge reading is forgotten with its window"
                    float,
                    double) {
   using S = TestType;
-  auto o = options<S>(16);
-  o.noise = S(1);
-  const TaxelFeatures<S> features(4, 4, o);
-  auto state = features.start();
+  auto o = options(16);
+  o.noise = 1;
+  TaxelFeatures<S> finger(4, 4, o);
   Index false_alarms_late = 0;
   for (int k = 0; k < 200; ++k) {
     Image<S> taxels(4, 4, S(100));
     taxels(1, 1) = k == 50 ? S(9e8) : S(100);
-    const auto sample = features(taxels, k, state);
+    const auto sample = finger(taxels, k);
     if (k >= 50 && k < 66) {
       CHECK(sample.location == 5);
     }
@@ -105,15 +101,15 @@ TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds"
                    double) {
   using S = TestType;
   using Limits = std::numeric_limits<S>;
-  const TaxelFeatures<S> features(2, 2, options<S>(8));
+  const TaxelFeatures<S> features(2, 2, options(8));
   for (const S extreme : {Limits::max(), Limits::lowest(), Limits::denorm_min(), Limits::min()}) {
     CAPTURE(extreme);
-    auto state = features.start();
+    auto finger = features;
     for (int k = 0; k < 60; ++k) {
       Image<S> taxels(2, 2, S(10));
       taxels(0, 1) = k > 20 && k < 40 && k % 3 == 0 ? extreme : S(10);
       taxels(1, 1) = k % 4 < 2 ? S(20) : S(10);
-      const auto sample = features(taxels, k, state);
+      const auto sample = finger(taxels, k);
       CHECK(sample.waves >= 0);
       CHECK(sample.waves <= 4);
       CHECK_FALSE(std::isnan(sample.frequency_hz));
@@ -128,12 +124,11 @@ TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds"
 TEST_CASE("taxel features: bursts of late samples keep the clock of the vibration",
           "[taxel_features]") {
   // a sensor that samples evenly, but whose samples arrive late by up to two periods, in order
-  TaxelOptions<double> o;
+  TaxelOptions o;
   o.window = 32;
   o.sample_period_s = 0.032;
   o.noise = 1;
-  const TaxelFeatures<> features(1, 1, o);
-  auto state = features.start();
+  TaxelFeatures<> finger(1, 1, o);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> late(0, 0.064);
   double received = 0;
@@ -142,8 +137,8 @@ TEST_CASE("taxel features: bursts of late samples keep the clock of the vibratio
     const double taken = k * 0.032;
     received = std::max(received + 0.0002, taken + late(random));
     const double reading = 500 + 40 * std::sin(2 * 3.14159265358979 * 6.0 / (32 * 0.032) * taken);
-    const auto sample = features(Image<double>(1, 1, reading), received, state);
-    REQUIRE(sample.status != TaxelStatus::time_not_later);
+    const auto sample = finger(Image<double>(1, 1, reading), received);
+    REQUIRE(sample.status != TaxelStatus::refused);
     if (sample.is_vibrating()) {
       ++all;
       right += sample.waves == 6 ? 1 : 0;
@@ -157,18 +152,17 @@ TEST_CASE("taxel features: bursts of late samples keep the clock of the vibratio
 
 TEST_CASE("taxel features: times of a long run, in float", "[taxel_features]") {
   // a float resolves 1e6 s to 0.06 s, two periods, so the time is always a double
-  TaxelOptions<float> o;
+  TaxelOptions o;
   o.noise = 1;
   const TaxelFeatures<float> features(1, 1, o);
   for (const double begin_s : {0.0, 1e6, 1.8e9}) {
     CAPTURE(begin_s);
-    auto state = features.start();
+    auto finger = features;
     for (int k = 0; k < 64; ++k) {
       const float reading = 500 + (k < 32      ? 0.1F * static_cast<float>(k % 3)
                                    : k % 4 < 2 ? 40
                                                : -40);
-      const auto sample = features(Image<float>(1, 1, reading), begin_s + k / 30.0, state);
-      CHECK(sample.gaps == 0);
+      const auto sample = finger(Image<float>(1, 1, reading), begin_s + k / 30.0);
       CHECK(sample.status == (k < 15   ? TaxelStatus::filling
                               : k < 32 ? TaxelStatus::quiet
                                        : TaxelStatus::vibrating));
@@ -186,20 +180,20 @@ TEMPLATE_TEST_CASE("taxel features: after large readings, ones that stay the sam
                    double) {
   // the running sum of squares keeps roundoff of the large ones until it is taken anew
   using S = TestType;
-  auto o = options<S>(8);
+  auto o = options(8);
   o.stuck_after = 0;
   const TaxelFeatures<S> features(2, 4, o);
   const int most = std::is_same_v<S, float> ? 100000 : 1000000000;
   std::mt19937 random(5);
   std::uniform_int_distribution<int> any(1, most);
   for (int k = 0; k < 100; ++k) {
-    auto state = features.start();
+    auto finger = features;
     Image<S> readings(2, 4);
     for (int sample = 0; sample < 30; ++sample) {
       for (S& reading : readings.cells) {
         reading = sample < 12 ? static_cast<S>(any(random)) : reading;
       }
-      const auto seen = features(readings, sample, state);
+      const auto seen = finger(readings, sample);
       CHECK((seen.status == TaxelStatus::quiet || sample < 19));
     }
   }

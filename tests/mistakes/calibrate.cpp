@@ -18,7 +18,7 @@
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"

@@ -165,15 +165,13 @@ TEST_CASE("mistakes with the grip's control by friction", "[mistakes]") {
 TEST_CASE("mistakes with the search for the holding force", "[mistakes]") {
   // Pre-slip at 4 N, then slip; `signal` is the hand's status.
   const auto ends = [](const std::function<PreslipStatus(double force_n, int k)>& signal) {
-    const LoosenUntilPreslip<> loosen({.settle_samples = 2, .watch_samples = 4});
-    const LiftWithRegrip<> lift({.settle_samples = 2});
-    auto search = loosen.start();
-    auto way = lift.start();
+    LoosenUntilPreslip<> loosen({.settle_samples = 2, .watch_samples = 4});
+    LiftWithRegrip<> lift({.settle_samples = 2});
     for (int k = 0; k < 2000; ++k) {
-      (void)loosen(signal(search.command().force_n, k), search);
-      (void)lift(signal(way.command().force_n, k), way);
+      (void)loosen(signal(loosen.command().force_n, k));
+      (void)lift(signal(lift.command().force_n, k));
     }
-    return std::string(name_of(search.command().phase)) + ", " + name_of(way.command().phase);
+    return std::string(name_of(loosen.command().phase)) + ", " + name_of(lift.command().phase);
   };
   using enum PreslipStatus;
   CHECK(ends([](double f, int) { return f < 4 ? preslip : steady; }) == "found, lifted");

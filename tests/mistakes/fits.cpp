@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
-#include "fingerpad/calibrate/preslip.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
 #include "support/pad.hpp"
@@ -216,7 +216,7 @@ struct Hand {
 };
 
 std::string said_of_preslip(const Hand& hand) {
-  PreslipCalibration<> calibration(20);
+  PreslipCalibration<> calibration(2, {.history = 20});
   for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
     calibration.add(hand.fingers[k], hand.marks[k]);
   }

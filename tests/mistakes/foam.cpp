@@ -18,7 +18,6 @@
 
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
-#include "fingerpad/published/preslip.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -75,9 +74,8 @@ double swapped(double reading) {
   return static_cast<double>((counts & 0xFF) << 8 | counts >> 8);
 }
 
-using Options = FoamHandOptions<2>;
 using Spoil = std::function<void(Sample&)>;
-using Change = std::function<void(Options&)>;
+using Change = std::function<void(TaxelOptions&)>;
 
 struct Mistake {
   std::string name;
@@ -99,16 +97,15 @@ const std::vector<Mistake>& mistakes() {
       {"time in ms", cannot_tell, TaxelStatus::clock_jumps, [](Sample& s) { s.time_s *= 1e3; }},
       {"time in us", cannot_tell, TaxelStatus::clock_jumps, [](Sample& s) { s.time_s *= 1e6; }},
       {"time in samples", cannot_tell, TaxelStatus::clock_jumps, [](Sample& s) { s.time_s = s.k; }},
-      {"a clock that stands still", cannot_tell, TaxelStatus::time_not_later,
+      {"a clock that stands still", cannot_tell, TaxelStatus::refused,
        [](Sample& s) { s.time_s = 1; }},
-      {"no time", cannot_tell, TaxelStatus::time_not_later,
-       [](Sample& s) { s.time_s = test::nan; }},
-      {"time backwards", cannot_tell, TaxelStatus::time_not_later,
+      {"no time", cannot_tell, TaxelStatus::refused, [](Sample& s) { s.time_s = test::nan; }},
+      {"time backwards", cannot_tell, TaxelStatus::refused,
        [](Sample& s) { s.time_s = -s.time_s; }},
       {"float times from 1e6 s on: every second one is the one before", steady, quiet,
        [](Sample& s) { s.time_s = static_cast<double>(static_cast<float>(1e6 + s.time_s)); }},
       {"a period of a tenth", cannot_tell, TaxelStatus::clock_jumps, [](Sample&) {},
-       [](Options& o) { o.taxels.sample_period_s = period_s / 10; }},
+       [](TaxelOptions& o) { o.sample_period_s = period_s / 10; }},
       {"gaps of a second, now and then", steady, quiet, [](Sample& s) { s.time_s += s.k / 20; }},
       // dead arrays
       {"an array dead at 0", cannot_tell, TaxelStatus::frozen,
@@ -119,7 +116,7 @@ const std::vector<Mistake>& mistakes() {
        [](Sample& s) { each(s.fingers[1], [](double) { return 4095; }); }},
       {"dead at full scale, which is known", cannot_tell, TaxelStatus::no_taxels,
        [](Sample& s) { each(s.fingers[1], [](double) { return 4095; }); },
-       [](Options& o) { o.taxels.saturated_at = 4095; }},
+       [](TaxelOptions& o) { o.saturated_at = 4095; }},
       {"no number at all", cannot_tell, TaxelStatus::no_taxels,
        [](Sample& s) { each(s.fingers[1], [](double) { return test::nan; }); }},
       {"an array that freezes in the middle",
@@ -164,27 +161,23 @@ const std::vector<Mistake>& mistakes() {
       {"bytes swapped", cannot_tell, TaxelStatus::vibrating,
        [](Sample& s) { each(s.fingers[1], swapped); }},
       {"noise ten times too small", cannot_tell, TaxelStatus::vibrating, [](Sample&) {},
-       [](Options& o) { o.taxels.noise = 0.6; }},
+       [](TaxelOptions& o) { o.noise = 0.6; }},
       {"readings in N, noise in counts", cannot_tell, TaxelStatus::too_weak,
        [](Sample& s) { each(s.fingers[1], [](double r) { return r / 800; }); }},
       {"readings scaled to 0 to 1", cannot_tell, TaxelStatus::too_weak,
        [](Sample& s) { each(s.fingers[1], [](double r) { return r / 4096; }); }},
       {"noise in thousandths of a count", cannot_tell, TaxelStatus::too_weak, [](Sample&) {},
-       [](Options& o) { o.taxels.noise = 6000; }},
+       [](TaxelOptions& o) { o.noise = 6000; }},
       {"readings with their sign changed", cannot_tell, TaxelStatus::too_weak,
        [](Sample& s) { each(s.fingers[1], [](double r) { return -r; }); }},
       // sizes
-      {"rows and columns exchanged", cannot_tell, TaxelStatus::other_size,
+      {"rows and columns exchanged", cannot_tell, TaxelStatus::refused,
        [](Sample& s) { s.fingers[1] = Image<double>(array_cols, array_rows, 600); }},
-      {"one row missing", cannot_tell, TaxelStatus::other_size,
+      {"one row missing", cannot_tell, TaxelStatus::refused,
        [](Sample& s) { s.fingers[1] = Image<double>(array_rows - 1, array_cols, 600); }},
   };
   return all;
 }
-
-struct BothRules : FoamHandMethods {
-  static constexpr bool has_grasp_optimise = true;
-};
 
 }  // namespace
 
@@ -192,42 +185,42 @@ TEST_CASE("mistakes with foam fingers", "[mistakes]") {
   std::ostringstream table;
   for (const Mistake& mistake : mistakes()) {
     CAPTURE(mistake.name);
-    Options options;
-    options.arrays.fill({array_rows, array_cols});
+    TaxelOptions options;
     if (mistake.options) {
       mistake.options(options);
     }
-    FoamHand<2, BothRules> hand(options);
-    const LoosenUntilPreslip<> loosen({.settle_samples = 0, .watch_samples = 4});
-    auto search = loosen.start();
+    const TaxelFeatures<> finger(array_rows, array_cols, options);
+    FoamHand<> hand({finger, finger});
+    Preslip<> optimise(2, {.rule = PreslipRule::grasp_optimise});
+    LoosenUntilPreslip<> loosen({.settle_samples = 0, .watch_samples = 4});
     Grip grip;
     const Spoil spoil = mistake.spoil;  // a fresh copy
-    FoamHandResult<2> felt;
+    PreslipStatus status = cannot_tell;
     int preslips = 0, steadies = 0;
     for (int k = 0; k < 121; ++k) {
       Sample sample = grip.next();
       spoil(sample);
-      felt = hand(sample.fingers, sample.time_s);
-      const double before_n = search.command().force_n;
-      const double after_n = loosen(felt.status, search).force_n;
-      CHECK((felt.ok() || before_n == after_n));
-      preslips += felt.status == PreslipStatus::preslip ? 1 : 0;
-      steadies += felt.status == steady && k >= mistake.seen_from ? 1 : 0;
+      status = hand(sample.fingers, sample.time_s);
+      CHECK(optimise(hand.fingers()) == status);
+      const double before_n = loosen.command().force_n;
+      const double after_n = loosen(status).force_n;
+      CHECK((status != cannot_tell || before_n == after_n));
+      preslips += status == PreslipStatus::preslip ? 1 : 0;
+      steadies += status == steady && k >= mistake.seen_from ? 1 : 0;
     }
-    CHECK(felt.status == mistake.hand);
-    CHECK(felt.fingers[1].status == mistake.finger);
+    CHECK(status == mistake.hand);
+    CHECK(hand.fingers()[1].status == mistake.finger);
     CHECK(preslips == 0);
     CHECK((mistake.hand == steady || steadies == 0));
     table << "\n  " << std::left << std::setw(64) << mistake.name << std::setw(14)
-          << name_of(felt.status) << name_of(felt.fingers[1].status);
+          << name_of(status) << name_of(hand.fingers()[1].status);
   }
   INFO(table.str());
   SUCCEED();
 }
 
 TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistakes]") {
-  const TaxelFeatures<> features(array_rows, array_cols);
-  auto state = features.start();
+  TaxelFeatures<> finger(array_rows, array_cols);
   Grip grip;
   FingerSample<> felt;
   for (int k = 0; k < 60; ++k) {
@@ -237,56 +230,40 @@ TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistake
     sample.fingers[0](3, 3) *= k % 3 == 0 ? 1 : 0;  // loose
     sample.fingers[0](4, 3) = test::nan;            // missing
     sample.time_s += k > 50 ? 1 : 0;                // a gap
-    felt = features(sample.fingers[0], sample.time_s, state);
+    felt = finger(sample.fingers[0], sample.time_s);
   }
   CHECK(felt.frozen == 2);
   CHECK(felt.left_out == 3);
-  CHECK(felt.gaps == 1);
   CHECK(felt.status == TaxelStatus::quiet);
 }
 
-namespace {
-
-/// Status of a rule at the end of a grip, with one dead finger or none.
-template <class Rule>
-PreslipStatus said_with(bool dead) {
-  const TaxelFeatures<> features(array_rows, array_cols);
-  const Preslip<Rule> preslip;
-  std::array states{features.start(), features.start()};
-  auto state = preslip.start();
-  Grip grip;
-  PreslipResult felt;
-  for (int k = 0; k < 121; ++k) {
-    const Sample sample = grip.next();
-    const Image<double> silent(array_rows, array_cols, 517);
-    const std::array samples{features(sample.fingers[0], sample.time_s, states[0]),
-                             features(dead ? silent : sample.fingers[1], sample.time_s, states[1])};
-    felt = preslip(samples, state);
-    CHECK_FALSE(felt.alarm);
+TEST_CASE("mistakes with foam fingers: one is dead, by the rules as printed", "[mistakes]") {
+  for (const PreslipRule rule :
+       {PreslipRule::printed_grasp_lift, PreslipRule::printed_grasp_optimise}) {
+    for (const bool dead : {false, true}) {
+      const TaxelFeatures<> finger(array_rows, array_cols);
+      FoamHand<> hand({finger, finger}, {.rule = rule});
+      Grip grip;
+      PreslipStatus status = cannot_tell;
+      for (int k = 0; k < 121; ++k) {
+        Sample sample = grip.next();
+        sample.fingers[1] = dead ? Image<double>(array_rows, array_cols, 517) : sample.fingers[1];
+        status = hand(sample.fingers, sample.time_s);
+        CHECK(status != PreslipStatus::preslip);
+      }
+      CHECK(status == (dead ? cannot_tell : steady));
+    }
   }
-  return felt.status;
 }
 
-}  // namespace
-
-TEST_CASE("mistakes with foam fingers: one is dead, by either rule", "[mistakes]") {
-  CHECK(said_with<GraspLift>(false) == steady);
-  CHECK(said_with<GraspLift>(true) == cannot_tell);
-  CHECK(said_with<published::GraspOptimise>(false) == steady);
-  CHECK(said_with<published::GraspOptimise>(true) == cannot_tell);
-}
-
-TEST_CASE("mistakes with foam fingers: the state of another estimator", "[mistakes]") {
-  const Preslip<> one({.history = 10}), other({.history = 1000});
-  std::array<FingerSample<>, 2> hand;
-  auto state = one.start();
-  for (int k = 0; k < 50; ++k) {
-    CHECK(other(hand, state).status == PreslipStatus::cannot_tell);
-    CHECK_FALSE(other(hand, state).alarm);
-  }
-  const TaxelFeatures<> small(2, 2), large(20, 20);
-  auto window = small.start();
-  CHECK(large(Image<double>(20, 20, 5), 0, window).status == TaxelStatus::other_size);
+TEST_CASE("mistakes with foam fingers: another number of fingers", "[mistakes]") {
+  const TaxelFeatures<> finger(array_rows, array_cols);
+  FoamHand<> hand({finger, finger});
+  const std::array<Image<double>, 3> three{Image<double>(array_rows, array_cols, 600),
+                                           Image<double>(array_rows, array_cols, 600),
+                                           Image<double>(array_rows, array_cols, 600)};
+  CHECK(hand(three, 0) == cannot_tell);
+  CHECK(test::refusal([] { FoamHand<>({}); }) == "Preslip: fingers = 0, must be in [1, 100]");
 }
 
 TEST_CASE("mistakes with foam fingers: arrays larger than any", "[mistakes]") {
@@ -299,6 +276,6 @@ TEST_CASE("mistakes with foam fingers: arrays larger than any", "[mistakes]") {
   CHECK(said(4096, 4096, 4096) ==
         "TaxelFeatures: cells in memory = 68719476736, must be <= 100000000");
   CHECK(test::refusal([] {
-          const Preslip<> r({.history = enormous});
+          const Preslip<> r(2, {.history = enormous});
         }).find("PreslipOptions: history = ") == 0);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/recoil.hpp"
@@ -90,9 +90,8 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
     CHECK(found);
   }
   SECTION("features of the taxels") {
-    const TaxelFeatures<> features(side, side);
-    const auto state = features.start();
-    auto copy = state;
+    const TaxelFeatures<> finger(side, side);
+    auto copy = finger;
     CHECK(taken([&] {
             copy.reset();
             FingerSample<> felt;
@@ -100,7 +99,7 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
               const LazyView taxels(side, side, [k](Index i, Index) {
                 return 500.0 + (k % 4 < 2 ? 100 : 0) + static_cast<double>(i);
               });
-              felt = features(taxels, 0.03 * k, copy);
+              felt = copy(taxels, 0.03 * k);
             }
             CHECK(felt.status == TaxelStatus::vibrating);
           }) == 0);

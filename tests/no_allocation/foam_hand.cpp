@@ -10,16 +10,9 @@
 
 using namespace fingerpad;
 
-namespace {
-struct BothRules : FoamHandMethods {
-  static constexpr bool has_grasp_optimise = true;
-};
-}  // namespace
-
 TEST_CASE("foam hand: a sample allocates nothing", "[foam_hand]") {
-  FoamHandOptions<3> options;
-  options.arrays = {FoamArray{4, 3}, FoamArray{4, 3}, FoamArray{4, 3}};
-  FoamHand<3, BothRules> hand(options);
+  const TaxelFeatures<> finger(4, 3);
+  FoamHand<> hand({finger, finger, finger}, {.rule = PreslipRule::grasp_optimise});
   test::Image<double> taxels(4, 3, 100);
   int preslips = 0;
   const long before = test::allocations();
@@ -27,8 +20,8 @@ TEST_CASE("foam hand: a sample allocates nothing", "[foam_hand]") {
     taxels(k > 50 ? 1 : 3, 2) = k > 30 && k % 4 < 2 ? 200 : 100;
     taxels(0, 1) = 100 + k;
     const auto view = as_view(taxels);
-    const auto felt = hand(std::array{view, view, view}, k / 30.0);
-    preslips += felt.status == PreslipStatus::preslip ? 1 : 0;
+    const PreslipStatus status = hand(std::array{view, view, view}, k / 30.0);
+    preslips += status == PreslipStatus::preslip ? 1 : 0;
   }
   hand.reset();
   CHECK(test::allocations() == before);

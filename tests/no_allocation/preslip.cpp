@@ -5,7 +5,6 @@
 #include <array>
 
 #include "fingerpad/foam/holding_force.hpp"
-#include "fingerpad/published/preslip.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -14,64 +13,56 @@ using namespace fingerpad;
 
 namespace {
 
-template <class S, std::size_t Fingers>
-std::array<FingerSample<S>, Fingers> hand(int k) {
-  std::array<FingerSample<S>, Fingers> now;
-  for (std::size_t f = 0; f < Fingers; ++f) {
-    const int seed = k + static_cast<int>(f);
-    now[f].status = TaxelStatus::vibrating;
-    now[f].location = seed % 7 - 1;
-    now[f].waves = seed % 11 % 5;
-    now[f].center_x_mm = S(seed % 3) / S(4);
-    now[f].center_y_mm = seed % 13 == 0 ? not_a_number<S>() : S(seed % 5) / S(4);
+template <class S>
+std::array<FingerSample<S>, 2> hand(int k) {
+  std::array<FingerSample<S>, 2> now;
+  for (int f = 0; f < 2; ++f) {
+    FingerSample<S>& finger = now[static_cast<std::size_t>(f)];
+    const int seed = k + f;
+    finger.status = TaxelStatus::vibrating;
+    finger.add_vibration(seed % 7, seed % 11 % 5);
+    finger.center_x_mm = S(seed % 3) / S(4);
+    finger.center_y_mm = seed % 13 == 0 ? not_a_number<S>() : S(seed % 5) / S(4);
   }
   return now;
 }
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("pre-slip: a sample allocates nothing",
-                   "[preslip]",
-                   (Preslip<GraspOptimise, 3, float>),
-                   (Preslip<>),
-                   (Preslip<GraspLift, 2, test::Dual<double>>),
-                   (published::StackScan<GraspLift>)) {
-  const auto run = []<template <class, std::size_t, class> class Search, class Rule,
-                      std::size_t Fingers, class S>(const Search<Rule, Fingers, S>& preslip) {
-    const long before_state = test::allocations();
-    auto state = preslip.start();
-    CHECK(test::allocations() > before_state);
-    const auto copied = state;
+TEMPLATE_TEST_CASE(
+    "pre-slip: a sample allocates nothing", "[preslip]", float, double, test::Dual<double>) {
+  for (const PreslipRule rule :
+       {PreslipRule::grasp_lift, PreslipRule::grasp_optimise, PreslipRule::printed_grasp_lift,
+        PreslipRule::printed_grasp_optimise}) {
+    const long at_start = test::allocations();
+    Preslip<TestType> preslip(2, {.rule = rule, .history = 40});
+    CHECK(test::allocations() > at_start);
+    const auto copied = preslip;
     int alarms = 0;
-    const auto last = hand<S, Fingers>(0);
     const long before = test::allocations();
     for (int k = 0; k < 300; ++k) {
       if (k == 200) {
-        state.reset();
+        preslip.reset();
       }
-      const auto now = hand<S, Fingers>(k * k);
-      alarms += preslip(now, state).alarm ? 1 : 0;
-      alarms += is_preslip<Rule>(last, now, preslip.options()) ? 1 : 0;
+      const auto now = hand<TestType>(k * k);
+      alarms += preslip(now) == PreslipStatus::preslip ? 1 : 0;
     }
-    state = copied;  // of the same size: the memory exists
+    preslip = copied;  // of the same size: the memory exists
     CHECK(test::allocations() == before);
     CHECK(alarms > 0);
-  };
-  run(TestType({.history = 40}));
+  }
 }
 
 TEST_CASE("searches for the holding force: nothing is allocated", "[holding_force]") {
-  const LoosenUntilPreslip<double> loosen;
-  const LiftWithRegrip<double> lift;
   const long before = test::allocations();
-  auto loosening = loosen.start();
-  auto lifting = lift.start();
+  LoosenUntilPreslip<> loosen;
+  LiftWithRegrip<> lift;
   for (int k = 0; k < 300; ++k) {
     const auto signal = k % 40 == 39 ? PreslipStatus::preslip : PreslipStatus::steady;
-    (void)loosen(k > 200 ? signal : PreslipStatus::steady, loosening);
-    (void)lift(signal, lifting);
+    (void)loosen(k > 200 ? signal : PreslipStatus::steady);
+    (void)lift(signal);
   }
   CHECK(test::allocations() == before);
-  CHECK(loosening.command().phase == SearchPhase::found);
-  CHECK(lifting.command().steps > 0);
+  CHECK(loosen.command().phase == SearchPhase::found);
+  CHECK(lift.command().steps > 0);
 }

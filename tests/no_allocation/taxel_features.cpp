@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/foam/taxel_features.hpp"
-
+#include "fingerpad/foam/taxels.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -9,9 +8,8 @@
 using namespace fingerpad;
 
 TEST_CASE("taxel features: a sample allocates nothing", "[taxel_features]") {
-  const TaxelFeatures<> features(16, 4);
   const long before = test::allocations();
-  auto state = features.start();
+  TaxelFeatures<> finger(16, 4);
   CHECK(test::allocations() > before);  // all memory is allocated here
   test::Image<double> taxels(16, 4, 100);
   const test::Image<double> other(4, 16, 100);
@@ -21,11 +19,11 @@ TEST_CASE("taxel features: a sample allocates nothing", "[taxel_features]") {
     taxels(3, 2) = k % 4 < 2 ? 200 : 100;
     taxels(5, 1) = k == 50 ? test::nan : 100;
     const double time_s = k / 30.0 + (k > 70 ? 10 : 0);  // one jump
-    vibrating += features(taxels, time_s, state).is_vibrating() ? 1 : 0;
-    features(other, time_s, state);
-    features(taxels, test::nan, state);
+    vibrating += finger(taxels, time_s).is_vibrating() ? 1 : 0;
+    finger(other, time_s);
+    finger(taxels, test::nan);
   }
-  state.reset();
+  finger.reset();
   CHECK(test::allocations() == at_start);
   CHECK(vibrating == 71 - 15 + 29 - 15);
 }

@@ -59,9 +59,9 @@ News any_news(Index most) {
 
 template <class Search>
 auto after(const Search& search, const News& signal) {
-  auto state = search.start();
+  auto state = search;
   for (const PreslipStatus one : signal) {
-    (void)search(one, state);
+    (void)state(one);
   }
   return state.command();
 }
@@ -90,14 +90,13 @@ PreslipStatus object(double force_n, double begins_below_n, double slips_below_n
 /// The command at the end of a search; the object's answers may be missing for a while.
 template <class Search>
 auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
-  auto state = search.start();
+  auto state = search;
   const Index seldom = test::whole(2, 10);
   for (int k = 0; k < 100000 && !is_end(state.command().phase); ++k) {
     const bool is_missing = k % seldom == 0;
     const double force_n = state.command().force_n;
-    (void)search(
-        is_missing ? PreslipStatus::cannot_tell : object(force_n, begins_below_n, slips_below_n),
-        state);
+    (void)state(is_missing ? PreslipStatus::cannot_tell
+                           : object(force_n, begins_below_n, slips_below_n));
   }
   RC_ASSERT(is_end(state.command().phase));
   return state.command();
@@ -105,16 +104,16 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
 
 template <class Search>
 void check_copies(const Search& search, const News& signal) {
-  auto state = search.start();
+  auto state = search;
   const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(signal.size()) - 1));
   for (std::size_t k = 0; k < at; ++k) {
-    (void)search(signal[k], state);
+    (void)state(signal[k]);
   }
   auto copy = state;
   News rest(signal.begin() + static_cast<std::ptrdiff_t>(at), signal.end());
   for (const PreslipStatus one : rest) {
-    const auto command = search(one, state);
-    RC_ASSERT(equal(command, search(one, copy)));
+    const auto command = state(one);
+    RC_ASSERT(equal(command, copy(one)));
     RC_ASSERT(equal(command, state.command()));
   }
   RC_ASSERT(equal(after(search, signal), state.command()));
@@ -131,10 +130,10 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
   rc::prop("the force keeps its limits and rises only at the end", [] {
     const auto plan = any_loosen_plan();
     const LoosenUntilPreslip<double> search(plan);
-    auto state = search.start();
+    auto state = search;
     for (const PreslipStatus one : any_news(120)) {
       const auto before = state.command();
-      const auto now = search(one, state);
+      const auto now = state(one);
       RC_ASSERT(now.force_n >= plan.min_force_n);
       RC_ASSERT(now.force_n <= plan.first_force_n);
       RC_ASSERT((now.force_n <= before.force_n || now.phase == SearchPhase::found ||
@@ -164,11 +163,11 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     const News steady(static_cast<std::size_t>(bound), PreslipStatus::steady);
     RC_ASSERT(after(search, steady).phase == SearchPhase::at_limit);
     RC_ASSERT(!is_end(after(search, News(steady.begin() + 1, steady.end())).phase));
-    auto state = search.start();
+    auto state = search;
     Index told = 0;
     while (told < bound) {
       for (const PreslipStatus one : any_news(50)) {
-        (void)search(one, state);
+        (void)state(one);
         told += one != PreslipStatus::cannot_tell ? 1 : 0;
       }
     }
@@ -255,10 +254,10 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
   rc::prop("force and height keep their limits and never fall before the end", [] {
     const auto plan = any_lift_plan();
     const LiftWithRegrip<double> search(plan);
-    auto state = search.start();
+    auto state = search;
     for (const PreslipStatus one : any_news(120)) {
       const auto before = state.command();
-      const auto now = search(one, state);
+      const auto now = state(one);
       RC_ASSERT(now.force_n >= plan.first_force_n);
       RC_ASSERT(now.force_n <= plan.max_force_n);
       RC_ASSERT(now.force_n >= before.force_n);
@@ -284,11 +283,11 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     const Index lifts = steps_in(plan.height_mm, plan.height_step_mm);
     // each tightening settles; after it follows at most the last lift or the end
     const Index bound = regrips * (1 + plan.settle_samples) + lifts;
-    auto state = search.start();
+    auto state = search;
     Index told = 0;
     while (told < bound) {
       for (const PreslipStatus one : any_news(50)) {
-        (void)search(one, state);
+        (void)state(one);
         told += one != PreslipStatus::cannot_tell ? 1 : 0;
       }
     }

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 // Each published method under its one name: a behaviour that only the printed form has shows that
 // it is the method as printed.
-#include <array>
 #include <cmath>
 
 #include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/shear.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
@@ -48,40 +46,4 @@ TEST_CASE("published shear: straight lines, normalised by the printed exponents"
   const auto by_depth = published::shear_by_depth(2.0, 300.0);
   CHECK(by_depth(20, {0.5, 0}, 0.1).tangential_force_n.x == Approx(std::pow(2, 0.75)));
   CHECK(by_depth(20, {0.5, 0}, 0.1).moment_n_mm == Approx(30 * std::pow(2, 2.2)));
-}
-
-TEST_CASE("published pre-slip rules: what makes a pair", "[published]") {
-  const auto sample = [](double x, Index location, Index waves) {
-    FingerSample<double> s;
-    s.status = TaxelStatus::vibrating;
-    s.center_x_mm = x;
-    s.center_y_mm = 0;
-    s.location = location;
-    s.waves = waves;
-    return s;
-  };
-  const auto alarm = [](const auto& rule, const auto& older, const auto& later) {
-    auto state = rule.start();
-    CHECK_FALSE(rule(std::array{older, older}, state).alarm);
-    return rule(std::array{later, later}, state).alarm;
-  };
-  const auto optimise = published::grasp_optimise();
-  CHECK(alarm(optimise, sample(1, 3, 4), sample(1, 5, 4)));        // another taxel, equal waves
-  CHECK_FALSE(alarm(optimise, sample(1, 3, 4), sample(1, 5, 5)));  // more waves
-  const auto lift = published::grasp_lift();
-  CHECK(alarm(lift, sample(1, 3, 4), sample(9, 5, 5)));        // force has moved, more waves
-  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(9, 5, 4)));  // force has moved, equal waves
-  CHECK_FALSE(alarm(lift, sample(1, 3, 4), sample(1, 5, 5)));  // force has not moved
-  // loosening requires it of both fingers, lifting of either
-  const auto alarm_by = [](const auto& rule, const auto& older, const auto& left,
-                           const auto& right) {
-    auto state = rule.start();
-    (void)rule(std::array{older, older}, state);
-    return rule(std::array{left, right}, state).alarm;
-  };
-  const auto was = sample(1, 3, 4), other = sample(1, 5, 4), moved = sample(9, 5, 5);
-  CHECK_FALSE(alarm_by(optimise, was, was, other));
-  CHECK_FALSE(alarm_by(optimise, was, other, was));
-  CHECK(alarm_by(lift, was, was, moved));
-  CHECK(alarm_by(lift, was, moved, was));
 }

@@ -514,7 +514,7 @@ TEST_CASE("samples whose time is missing or not later are as if they were not th
   std::size_t at = 0;
   int refused = 0;
   for (const Line& line : lines) {
-    if (line.at("taxel_status") == "time not later") {
+    if (line.at("taxel_status") == "refused") {
       ++refused;
       CHECK(line.at("preslip") == "0");
       CHECK(line.at("sum") == "");

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "support/pad.hpp"
 
 namespace test {
@@ -92,10 +92,8 @@ inline fingerpad::FingerSample<> finger(double x_mm,
   s.status = waves > 0 ? TaxelStatus::vibrating : TaxelStatus::quiet;
   s.center_x_mm = x_mm;
   s.center_y_mm = 10;
-  s.location = waves > 0 ? location : s.no_location;
-  s.waves = waves;
   if (waves > 0) {
-    s.add_vibration({waves, location, false});
+    s.add_vibration(location, waves);
   }
   return s;
 }

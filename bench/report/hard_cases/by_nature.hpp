@@ -15,12 +15,10 @@
 
 #include "bench/support/scene_frames.hpp"
 #include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/foam/preslip.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/depth.hpp"
-#include "fingerpad/published/preslip.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"
 #include "support/foam_signals.hpp"
 #include "support/rolling.hpp"
@@ -260,8 +258,7 @@ inline void add_wrench(std::vector<CaseByNature>& rows) {
 
 /// Number of detected slips out of 40 slips of single taxels. Two taxels of each finger slip, each
 /// with waves of its own.
-template <class Rule>
-int slips_found() {
+inline int slips_found(fingerpad::PreslipRule rule) {
   using namespace fingerpad;
   int found = 0;
   std::mt19937 random(17);
@@ -284,20 +281,14 @@ int slips_found() {
       }
     }
     test::FoamSignal signal(scene, k);
-    const TaxelFeatures<> features(
-        scene.rows, scene.cols,
-        TaxelOptions<>{.sample_period_s = 1 / rate_hz, .noise = scene.noise});
-    const Preslip<Rule> rule;
-    std::array<TaxelFeatures<>::State, 2> fingers{features.start(), features.start()};
-    auto history = rule.start();
+    const TaxelFeatures<> finger(scene.rows, scene.cols,
+                                 {.sample_period_s = 1 / rate_hz, .noise = scene.noise});
+    FoamHand<> hand({finger, finger}, {.rule = rule});
     bool alarms = false;
     for (int n = 0; n < 140 && !alarms; ++n) {
       const double time_s = n / rate_hz;
-      std::array<FingerSample<double>, 2> samples;
-      for (std::size_t f = 0; f < 2; ++f) {
-        samples[f] = features(signal.finger(f, time_s), time_s, fingers[f]);
-      }
-      alarms = rule(samples, history).is_fresh;
+      const auto left = signal.finger(0, time_s), right = signal.finger(1, time_s);
+      alarms = hand(std::array{left, right}, time_s) == PreslipStatus::preslip;
     }
     found += alarms ? 1 : 0;
   }
@@ -312,8 +303,8 @@ inline std::vector<CaseByNature> cases_by_nature() {
   rows.push_back({"pre-slip, grasp-optimise",
                   "several taxels vibrate: two of each finger, each with waves of its own",
                   "slips that are found, of 40",
-                  std::to_string(slips_found<fingerpad::published::GraspOptimise>()),
-                  std::to_string(slips_found<fingerpad::GraspOptimise>())});
+                  std::to_string(slips_found(fingerpad::PreslipRule::printed_grasp_optimise)),
+                  std::to_string(slips_found(fingerpad::PreslipRule::grasp_optimise))});
   return rows;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
@@ -73,13 +73,12 @@ inline Row small_vibration() {
              "vibration of 8 on 4000 counts that wander, 20000 samples, window of 8; of its rms",
              "sums about a recent reading, made anew within each window", []<class S>(S) {
                Forms f;
-               fingerpad::TaxelOptions<S> options;
+               fingerpad::TaxelOptions options;
                options.window = 8;
-               options.sample_period_s = S(1);
-               options.longest_gap_s = S(10);
-               options.noise = S(0);
-               const fingerpad::TaxelFeatures<S> features(1, 1, options);
-               auto state = features.start();
+               options.sample_period_s = 1;
+               options.longest_gap_s = 10;
+               options.noise = 0;
+               fingerpad::TaxelFeatures<S> features(1, 1, options);
                test::Random random(5);
                std::vector<S> readings;
                S sum = S(0), squares = S(0);
@@ -96,7 +95,7 @@ inline Row small_vibration() {
                    sum -= gone;
                    squares -= gone * gone;
                  }
-                 const auto sample = features(test::Image<S>(1, 1, reading), k, state);
+                 const auto sample = features(test::Image<S>(1, 1, reading), k);
                  if (k % 7 == 0 && k > 100) {
                    Digits50 mean(0), tilt(0), left(0);
                    const std::size_t first = readings.size() - 8;

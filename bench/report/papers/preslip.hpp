@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "examples/grip/foam_fingers.hpp"
-#include "fingerpad/foam/preslip.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
-#include "fingerpad/published/preslip.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 #include "table.hpp"
 
 namespace bench::papers {
@@ -33,32 +31,24 @@ struct Warnings {
 };
 
 /// Processing of both fingers from readings to an alarm.
-template <class Rule>
 class Watch {
  public:
-  Watch(const Rule& rule, const grip::FoamFingersSetup& object)
-      : features_(object.rows,
-                  object.cols,
-                  fingerpad::TaxelOptions<>{.pitch_mm = object.pitch_mm,
-                                            .sample_period_s = 1 / object.rate_hz,
-                                            .noise = object.noise_counts}),
-        rule_(rule),
-        fingers_{features_.start(), features_.start()},
-        history_(rule_.start()) {}
+  Watch(const fingerpad::PreslipOptions& rule, const grip::FoamFingersSetup& object)
+      : finger_(object.rows,
+                object.cols,
+                {.pitch_mm = object.pitch_mm,
+                 .sample_period_s = 1 / object.rate_hz,
+                 .noise = object.noise_counts}),
+        foam_({finger_, finger_}, rule) {}
 
   bool alarms(const grip::FoamFingers& hand) {
-    std::array<fingerpad::FingerSample<double>, 2> samples;
-    for (std::size_t f = 0; f < 2; ++f) {
-      samples[f] = features_(hand.readings(f), hand.time_s(), fingers_[f]);
-    }
-    return rule_(samples, history_).is_fresh;
+    return foam_(std::array{hand.readings(0), hand.readings(1)}, hand.time_s()) ==
+           fingerpad::PreslipStatus::preslip;
   }
 
  private:
-  fingerpad::TaxelFeatures<> features_;
-  Rule rule_;
-  std::array<fingerpad::TaxelFeatures<>::State, 2> fingers_;
-  decltype(std::declval<const Rule&>().start()) history_;
+  fingerpad::TaxelFeatures<> finger_;
+  fingerpad::FoamHand<> foam_;
 };
 
 inline grip::FoamFingersSetup object_of(unsigned seed) {
@@ -68,15 +58,14 @@ inline grip::FoamFingersSetup object_of(unsigned seed) {
   return object;
 }
 
-template <class Rule>
-Warnings warnings_of(const Rule& rule) {
+inline Warnings warnings_of(const fingerpad::PreslipOptions& rule) {
   using namespace fingerpad;
   Warnings w;
   constexpr double held_s = 20;
   for (unsigned seed = 0; seed < 10; ++seed) {
     const grip::FoamFingersSetup object = object_of(seed);
     grip::FoamFingers hand(object, seed);
-    Watch<Rule> watch(rule, object);
+    Watch watch(rule, object);
     constexpr double step_n = 0.2;
     constexpr int samples_a_step = 40;
     int step = 0, warned_at = -1;
@@ -96,7 +85,7 @@ Warnings warnings_of(const Rule& rule) {
       w.most = (std::max)(w.most, steps);
     }
     grip::FoamFingers still(object, seed + 100);
-    Watch<Rule> idle(rule, object);
+    Watch idle(rule, object);
     for (int k = 0; k < held_s * object.rate_hz; ++k) {
       still.advance(object.first_force_n);
       w.false_per_minute += idle.alarms(still) ? 6 / held_s : 0;  // 10 runs
@@ -107,10 +96,11 @@ Warnings warnings_of(const Rule& rule) {
 
 inline Section preslip_section() {
   using namespace fingerpad;
-  const auto old_optimise = warnings_of(published::grasp_optimise());
-  const auto optimise = warnings_of(Preslip<GraspOptimise>());
-  const auto old_lift = warnings_of(published::grasp_lift());
-  const auto lift = warnings_of(Preslip<GraspLift>());
+  const auto old_optimise =
+      warnings_of({.rule = PreslipRule::printed_grasp_optimise, .min_waves = 0});
+  const auto optimise = warnings_of({.rule = PreslipRule::grasp_optimise});
+  const auto old_lift = warnings_of({.rule = PreslipRule::printed_grasp_lift, .min_waves = 0});
+  const auto lift = warnings_of({.rule = PreslipRule::grasp_lift});
   const std::string nearest =
       "object between simulated foam fingers, loosened by 0.2 N a step until it falls";
   const std::string held = "the same objects held for 20 s by a grip that does not change";

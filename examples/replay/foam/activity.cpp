@@ -3,6 +3,7 @@
 #include "replay/foam/activity.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace replay {
@@ -22,9 +23,7 @@ FoamActivity activity_of(const FoamRecording& recording,
         const double& deviation =
             noise[f]
                 .deviations[static_cast<std::size_t>(i) * std::size_t(place.cols) + std::size_t(j)];
-        const fingerpad::TaxelFeatures<> features(
-            fingerpad::StridedView<const double>(&deviation, 1, 1, 1), recording.sensor.taxels);
-        auto state = features.start();
+        fingerpad::TaxelFeatures<> alone(1, 1, recording.sensor.taxels, std::span(&deviation, 1));
         const std::size_t taxel =
             static_cast<std::size_t>(place.first_row + i) * std::size_t(recording.table.cols) +
             static_cast<std::size_t>(place.first_col + j);
@@ -33,8 +32,8 @@ FoamActivity activity_of(const FoamRecording& recording,
           const auto sample = static_cast<std::size_t>(rows[k].sample);
           const double& reading =
               recording.table.readings[sample * recording.table.taxels() + taxel];
-          const auto seen = features(fingerpad::StridedView<const double>(&reading, 1, 1, 1),
-                                     recording.table.times_s[sample], state);
+          const auto seen = alone(fingerpad::StridedView<const double>(&reading, 1, 1, 1),
+                                  recording.table.times_s[sample]);
           if (seen.status != fingerpad::TaxelStatus::vibrating) {
             continue;
           }

@@ -38,7 +38,7 @@ struct Panel {
 using Value = double (*)(const fingerpad::FingerSample<double>& finger);
 
 double sum_of(const fingerpad::FingerSample<double>& finger) {
-  return finger.status == fingerpad::TaxelStatus::time_not_later ? std::nan("") : finger.sum;
+  return finger.status == fingerpad::TaxelStatus::refused ? std::nan("") : finger.sum;
 }
 
 double waves_of(const fingerpad::FingerSample<double>& finger) {
@@ -157,11 +157,13 @@ cv::Mat foam_chart(const std::string& title,
               Align::left, true);
   double y = first_rule;
   if (sensor.grasp_lift) {
-    paint_rule(canvas, axis, y, fingerpad::GraspLift::name, rows, &FoamAlarm::grasp_lift);
+    paint_rule(canvas, axis, y, name_of(fingerpad::PreslipRule::grasp_lift), rows,
+               &FoamAlarm::grasp_lift);
     y += 50;
   }
   if (sensor.grasp_optimise) {
-    paint_rule(canvas, axis, y, fingerpad::GraspOptimise::name, rows, &FoamAlarm::grasp_optimise);
+    paint_rule(canvas, axis, y, name_of(fingerpad::PreslipRule::grasp_optimise), rows,
+               &FoamAlarm::grasp_optimise);
   }
   axis.paint(canvas, bottom);
   return canvas.finished();

@@ -254,7 +254,7 @@ FoamRecording open_foam_recording(const fs::path& folder) {
     sensor.fingers = {{0, recording.table.rows, 0, recording.table.cols}};
   }
   check_fingers(folder / "sensor.json", recording);
-  fingerpad::TaxelOptions<double>& taxels = sensor.taxels;
+  fingerpad::TaxelOptions& taxels = sensor.taxels;
   const double measured_s = median_step_s(recording.table.times_s);
   const double by_default_s = measured_s > 0 ? measured_s : taxels.sample_period_s;
   taxels.sample_period_s = sensor.sample_period_s.value_or(by_default_s);

@@ -82,12 +82,12 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
     sensor.grasp_lift = rule != "grasp_optimise";
     sensor.grasp_optimise = rule != "grasp_lift";
   }
-  fingerpad::TaxelOptions<double> all = sensor.taxels;
+  fingerpad::TaxelOptions all = sensor.taxels;
   all.noise = sensor.noise.value_or(all.noise);
   all.sample_period_s = sensor.sample_period_s.value_or(all.sample_period_s);
   all.longest_gap_s = sensor.longest_gap_s.value_or(all.longest_gap_s);
-  foam.check([&] { expects_valid(all); });
-  foam.check([&] { expects_valid(sensor.rules); });
+  foam.check([&] { require(all); });
+  foam.check([&] { require(sensor.rules); });
 }
 
 /// Throws Failure for sections of other recordings: they indicate mixed-up files.

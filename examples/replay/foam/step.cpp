@@ -3,13 +3,11 @@
 #include "replay/foam/step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/pipeline/foam_hand.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/median.hpp"
 #include "replay/pictures/picture_parts.hpp"
@@ -17,6 +15,8 @@
 namespace replay {
 namespace {
 
+using fingerpad::PreslipRule;
+using fingerpad::PreslipStatus;
 using fingerpad::TaxelStatus;
 
 constexpr double thousandth = 1e-3;
@@ -32,16 +32,26 @@ double largest_reading(const FoamRecording& recording) {
   return largest;
 }
 
-/// Evaluates both rules; sensor.json selects which of them are reported.
-struct Methods : fingerpad::FoamHandMethods {
-  static constexpr bool has_grasp_optimise = true;
-};
+std::vector<fingerpad::TaxelFeatures<>> fingers_of(const FoamRecording& recording,
+                                                   const std::vector<FoamNoise>& noise) {
+  std::vector<fingerpad::TaxelFeatures<>> fingers;
+  for (std::size_t f = 0; f < noise.size(); ++f) {
+    const auto size = recording.finger(0, static_cast<int>(f));
+    fingers.emplace_back(size.rows(), size.cols(), recording.sensor.taxels, noise[f].deviations);
+  }
+  return fingers;
+}
+
+fingerpad::PreslipOptions with(PreslipRule rule, fingerpad::PreslipOptions options) {
+  options.rule = rule;
+  return options;
+}
 
 }  // namespace
 
 std::string FoamAlarm::names() const {
-  const std::string lift = fingerpad::GraspLift::name;
-  const std::string optimise = fingerpad::GraspOptimise::name;
+  const std::string lift = name_of(PreslipRule::grasp_lift);
+  const std::string optimise = name_of(PreslipRule::grasp_optimise);
   return any() ? grasp_lift && grasp_optimise ? optimise + "+" + lift
                  : grasp_lift                 ? lift
                                               : optimise
@@ -49,7 +59,7 @@ std::string FoamAlarm::names() const {
 }
 
 bool FoamRow::was_taken() const {
-  return fingers.front().status != TaxelStatus::time_not_later;
+  return fingers.front().status != TaxelStatus::refused;
 }
 
 FoamNoise noise_of(const FoamRecording& recording, int finger) {
@@ -87,59 +97,26 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
   }
 }
 
-template <std::size_t Fingers>
-FoamStep::Hand FoamStep::hand_of(const FoamRecording& recording,
-                                 const std::vector<FoamNoise>& noise) {
-  fingerpad::FoamHandOptions<Fingers> options;
-  options.taxels = recording.sensor.taxels;
-  options.rules = recording.sensor.rules;
-  for (std::size_t f = 0; f < Fingers; ++f) {
-    const auto size = recording.finger(0, static_cast<int>(f));
-    options.arrays[f] = {size.rows(),
-                         size.cols(),
-                         {noise[f].deviations.data(), size.rows(), size.cols(), size.cols()}};
-  }
-  return [&recording, hand = fingerpad::FoamHand<Fingers, Methods>(options)](int sample,
-                                                                             FoamRow& row) mutable {
-    std::array<fingerpad::StridedView<const double>, Fingers> readings;
-    for (std::size_t f = 0; f < Fingers; ++f) {
-      readings[f] = recording.finger(sample, static_cast<int>(f));
-    }
-    const auto felt = hand(readings, recording.table.times_s[static_cast<std::size_t>(sample)]);
-    row.fingers.assign(felt.fingers.begin(), felt.fingers.end());
-    row.alarm = {recording.sensor.grasp_lift && felt.grasp_lift.is_fresh,
-                 recording.sensor.grasp_optimise && felt.grasp_optimise.is_fresh};
-  };
-}
-
-FoamStep::Hand FoamStep::make_hand(const FoamRecording& recording,
-                                   const std::vector<FoamNoise>& noise) {
-  static_assert(max_fingers == 5);
-  switch (recording.fingers()) {
-    case 1:
-      return hand_of<1>(recording, noise);
-    case 2:
-      return hand_of<2>(recording, noise);
-    case 3:
-      return hand_of<3>(recording, noise);
-    case 4:
-      return hand_of<4>(recording, noise);
-    default:
-      return hand_of<5>(recording, noise);
-  }
-}
-
 FoamStep::FoamStep(const FoamRecording& recording, const std::vector<FoamNoise>& noise)
-    : recording_(recording), hand_(make_hand(recording, noise)) {}
+    : recording_(recording),
+      hand_(fingers_of(recording, noise), with(PreslipRule::grasp_lift, recording.sensor.rules)),
+      optimise_(recording.fingers(), with(PreslipRule::grasp_optimise, recording.sensor.rules)) {}
 
 FoamRow FoamStep::operator()(int sample) {
   const auto k = static_cast<std::size_t>(sample);
   FoamRow row{sample, recording_.table.frames[k], recording_.table.times[k], {}, {}};
-  row.fingers.reserve(static_cast<std::size_t>(recording_.fingers()));
+  std::vector<fingerpad::StridedView<const double>> readings;
+  for (int f = 0; f < recording_.fingers(); ++f) {
+    readings.push_back(recording_.finger(sample, f));
+  }
   const auto start = std::chrono::steady_clock::now();
-  hand_(sample, row);
+  const PreslipStatus lift = hand_(readings, recording_.table.times_s[k]);
+  const PreslipStatus optimise = optimise_(hand_.fingers());
   const std::chrono::duration<double, std::micro> passed = std::chrono::steady_clock::now() - start;
   us_.push_back(passed.count());
+  row.fingers.assign(hand_.fingers().begin(), hand_.fingers().end());
+  row.alarm = {recording_.sensor.grasp_lift && lift == PreslipStatus::preslip,
+               recording_.sensor.grasp_optimise && optimise == PreslipStatus::preslip};
   return row;
 }
 

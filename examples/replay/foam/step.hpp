@@ -3,12 +3,12 @@
 #pragma once
 // Computes features and pre-slip of a foam array with the library's foam_hand.hpp. Only this step
 // evaluates the pre-slip rules.
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "fingerpad/foam/preslip.hpp"
-#include "fingerpad/foam/taxel_features.hpp"
+#include "fingerpad/foam/taxels.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
 #include "replay/foam/recording.hpp"
 
 namespace replay {
@@ -57,15 +57,9 @@ class FoamStep {
   double median_us() const;
 
  private:
-  /// Fills `fingers` and `alarm` of a row.
-  using Hand = std::function<void(int sample, FoamRow& row)>;
-
-  template <std::size_t Fingers>
-  static Hand hand_of(const FoamRecording& recording, const std::vector<FoamNoise>& noise);
-  static Hand make_hand(const FoamRecording& recording, const std::vector<FoamNoise>& noise);
-
   const FoamRecording& recording_;
-  Hand hand_;
+  fingerpad::FoamHand<> hand_;     // with grasp-lift
+  fingerpad::Preslip<> optimise_;  // both rules are applied; sensor.json selects which are reported
   std::vector<double> us_;
 };
 

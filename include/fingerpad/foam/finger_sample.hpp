@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Sample of one foam finger at one time, as the paper stores it at each location T_i of its stack.
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -24,15 +24,15 @@ enum class TaxelStatus : std::uint8_t {
   too_weak,
   /// Windows do not fill, or more than half of the clock's steps are gaps: time not in seconds?
   clock_jumps,
-  other_size,  ///< the array or the state does not have the size of the features: nothing was done
-  time_not_later,  ///< the time is missing or not later than the last one: nothing was done
+  /// The array has another size, or its time is missing or not later than the last one: nothing was
+  /// done.
+  refused,
 };
 
 /// "vibrating", "quiet", ...
 constexpr const char* name_of(TaxelStatus status) {
-  constexpr std::array<const char*, 9> names = {"vibrating",   "quiet",      "filling",
-                                                "no taxels",   "frozen",     "too weak",
-                                                "clock jumps", "other size", "time not later"};
+  constexpr std::array<const char*, 8> names = {"vibrating", "quiet",    "filling",     "no taxels",
+                                                "frozen",    "too weak", "clock jumps", "refused"};
   const auto k = static_cast<std::size_t>(status);
   return k < names.size() ? names[k] : "unknown";
 }
@@ -40,7 +40,6 @@ constexpr const char* name_of(TaxelStatus status) {
 template <scalar S = double>
 struct FingerSample {
   static constexpr Index no_location = -1;
-  static constexpr std::size_t max_vibrations = 16;
 
   /// The taxels that vibrate with the same number of waves.
   struct Vibration {
@@ -50,8 +49,7 @@ struct FingerSample {
   };
 
   TaxelStatus status = TaxelStatus::filling;
-  /// Centroid of the force, x along columns, from the middle of the first taxel; NaN: nothing
-  /// presses.
+  /// Centroid of the force; x is along columns; NaN: nothing presses.
   S center_x_mm = not_a_number<S>();
   S center_y_mm = not_a_number<S>();
   S sum = S(0);                  ///< sum of the readings, in their unit
@@ -61,24 +59,28 @@ struct FingerSample {
   S deviation = S(0);            ///< its rms, in the unit of the readings
   Index left_out = 0;            ///< taxels that do not count in this sample
   Index frozen = 0;  ///< taxels whose reading has not changed for long, at 0 or another value
-  Index gaps = 0;    ///< steps of the clock in the window that are longer than two periods
   /// Whether a window was quiet since the start, so that a present vibration has begun after it.
   bool has_rested = true;
-
-  /// All vibrations, by their number of waves; that of `location` first.
-  std::array<Vibration, max_vibrations> vibrations = {};
   Index vibration_count = 0;
+  /// All vibrations, by their number of waves; that of `location` first.
+  std::array<Vibration, 16> vibrations = {};
 
-  /// Adds a vibrating taxel. Numbers of waves beyond `max_vibrations` are left out.
-  void add_vibration(const Vibration& one) {
-    const auto end = vibrations.begin() + vibration_count;
-    const auto same = std::find_if(vibrations.begin(), end,
-                                   [&](const Vibration& v) { return v.waves == one.waves; });
-    if (same != end) {
-      same->is_several = same->is_several || one.is_several || same->location != one.location;
-    } else if (end != vibrations.end()) {
-      *end = one;
-      ++vibration_count;
+  /// Adds a vibrating taxel; the first is that of `location`. Numbers of waves beyond the size of
+  /// `vibrations` are left out.
+  void add_vibration(Index at, Index with_waves) {
+    if (vibration_count == 0) {
+      location = at;
+      waves = with_waves;
+    }
+    for (Index k = 0; k < vibration_count; ++k) {
+      Vibration& known = vibrations[static_cast<std::size_t>(k)];
+      if (known.waves == with_waves) {
+        known.is_several = known.is_several || known.location != at;
+        return;
+      }
+    }
+    if (vibration_count < static_cast<Index>(vibrations.size())) {
+      vibrations[static_cast<std::size_t>(vibration_count++)] = {with_waves, at};
     }
   }
 
@@ -87,7 +89,10 @@ struct FingerSample {
   bool can_tell() const {
     return has_rested && (status == TaxelStatus::vibrating || status == TaxelStatus::quiet);
   }
-
+  /// The vibrations by which slip is judged; none if it cannot be.
+  std::span<const Vibration> judged() const {
+    return {vibrations.data(), can_tell() ? static_cast<std::size_t>(vibration_count) : 0};
+  }
   bool is_pressed() const { return is_finite(center_x_mm) && is_finite(center_y_mm); }
   bool is_vibrating() const { return location != no_location && waves > 0; }
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/calibrate/taxels.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,15 @@
 #include <vector>
 
 #include "fingerpad/adapt/dual.hpp"
+#include "fingerpad/pipeline/foam_hand.hpp"
+#include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
+#include "support/foam_signals.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
 using namespace fingerpad;
+using test::finger;
 using test::Random;
 using test::refusal;
 
@@ -26,7 +30,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double period_s = 1.0 / 30;
 using Array = test::Image<double>;
-using Options = TaxelOptions<double>;
+using Options = TaxelOptions;
 
 double gaussian(Random& random) {
   const double length = std::sqrt(-2 * std::log(1 - random.uniform()));
@@ -191,14 +195,10 @@ TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", 
     return i == 2 && j == 0 ? 3.0 : 500 + deviation(i, j) * noise;
   });
   const TaxelNoise noise = calibration.fit();
-  CHECK(noise.rows == 3);
-  CHECK(noise.cols == 4);
   CHECK(noise.windows == 400);
   CHECK(noise.deviations.size() == 12);
   CHECK(noise.typical == Approx(std::sqrt((100 + 10 * 4) / 11.0)).epsilon(0.04));
-  const auto view = noise.view();
-  CHECK(view.rows() == 3);
-  CHECK(view.cols() == 4);
+  const auto view = grid_of(noise.deviations, 3, 4);
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 4; ++j) {
       CAPTURE(i, j);
@@ -210,7 +210,7 @@ TEST_CASE("taxel noise: each taxel has its own, but none less than is typical", 
     }
   }
   // it is accepted by the features
-  CHECK(refusal([&] { TaxelFeatures<>{noise.view()}; }) == "accepted");
+  CHECK(refusal([&] { TaxelFeatures<>(3, 4, {}, noise.deviations); }) == "accepted");
 }
 
 TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
@@ -238,8 +238,7 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
   for (const double share : {1.0001, 0.9999}) {
     Options options;
     options.noise_factor = share * noise.largest_factor;
-    const TaxelFeatures<> features(noise.view(), options);
-    auto state = features.start();
+    TaxelFeatures<> features(rows, cols, options, noise.deviations);
     Array taxels(rows, cols);
     int vibrating = 0;
     for (Index k = 0; k < windows * window; ++k) {
@@ -247,7 +246,7 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
         taxels(static_cast<Index>(i) / cols, static_cast<Index>(i) % cols) =
             of[i][static_cast<std::size_t>(k)];
       }
-      const auto sample = features(taxels, period_s * static_cast<double>(k), state);
+      const auto sample = features(taxels, period_s * static_cast<double>(k));
       vibrating += (k + 1) % window == 0 && sample.is_vibrating() ? 1 : 0;
     }
     CHECK(vibrating == (share > 1 ? 0 : 1));
@@ -443,9 +442,9 @@ TEST_CASE("taxel noise: recordings that do not tell are refused", "[taxel_noise]
                       {.saturated_at = 4095})) == unchanged);
   // and invalid options
   CHECK(refusal([] { TaxelNoiseCalibration<>(0, 3); }) ==
-        "TaxelFeatures: rows = 0, must be in [1, 4096]");
+        "TaxelFeatures: rows = 0, must be in [1, 1000000]");
   CHECK(refusal([] { TaxelNoiseCalibration<>(3, -1); }) ==
-        "TaxelFeatures: cols = -1, must be in [1, 4096]");
+        "TaxelFeatures: cols = -1, must be in [1, 1000000]");
   CHECK(refusal([] { TaxelNoiseCalibration<>(3, 3, {.window = 3}); }) ==
         "TaxelOptions: window = 3, must be in [4, 4096]");
   CHECK(test::begins_with(refusal([] { TaxelNoiseCalibration<>(3, 3, {.pitch_mm = none}); }),
@@ -495,4 +494,149 @@ TEST_CASE("taxel noise: a centroid that cannot move has no deviation, also in de
   CHECK(noise.typical.slopes[0] == Approx(noise.typical.value).epsilon(1e-9));
   CHECK(noise.centroid_deviation_mm.value == 0);
   CHECK(noise.centroid_deviation_mm.slopes[0] == 0);
+}
+
+namespace {
+
+/// A trembling hand. Between slips the force moves by 0.3 mm and a taxel vibrates with two waves
+/// now and then; at the onset of slip the force moves by 1.5 mm and a taxel vibrates with `waves`.
+template <class Calibration>
+void add_trembling(Calibration& calibration, unsigned seed, Index waves, Index late = 0) {
+  Random random(seed);
+  calibration.begin_recording();
+  for (Index k = 0; k < 400; ++k) {
+    const auto is_onset = [](Index at) { return at % 50 >= 44; };
+    const bool slips = is_onset(k);
+    const double x = 20 + random.uniform(-0.15, 0.15) + (slips ? 1.5 : 0);
+    const Index now = slips ? waves : (k % 7 == 0 ? Index(2) : Index(0));
+    const auto one = finger(x, k % 11, now);
+    calibration.add(std::array{one, finger(20, 0, 0)}, k >= late && is_onset(k - late));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pre-slip calibration: thresholds between what trembles and what slips", "[preslip]") {
+  PreslipCalibration<> calibration(2, {.history = 20});
+  add_trembling(calibration, 1, 3);
+  add_trembling(calibration, 2, 3);
+  const auto fit = calibration.fit();
+  CAPTURE(fit.options.centroid_tolerance_mm, fit.options.min_waves, fit.precision(), fit.recall());
+  CHECK(fit.ok());
+  CHECK(fit.onsets == 16);
+  CHECK(fit.found == 16);
+  CHECK(fit.samples == 800);
+  CHECK(fit.marked == 96);
+  CHECK(fit.chance() == Approx(0.12));
+  CHECK(fit.precision() == 1);
+  CHECK(fit.options.history == 20);
+  // either threshold separates them
+  CHECK((fit.options.min_waves == 3 || fit.options.centroid_tolerance_mm >= 0.3));
+
+  // with equal waves, the centroid alone separates them
+  PreslipCalibration<> alike(2, {.history = 20});
+  add_trembling(alike, 3, 2);
+  const auto by_centroid = alike.fit();
+  CHECK(by_centroid.ok());
+  CHECK(by_centroid.recall() == 1);
+  CHECK(by_centroid.options.centroid_tolerance_mm >= 0.3);
+  CHECK(by_centroid.options.centroid_tolerance_mm < 1.5);
+  CHECK(alike.judge({.history = 20}).precision() < 0.6);  // the default of 0.1 mm
+}
+
+TEST_CASE("pre-slip calibration: round tolerances separate what moves little less or more",
+          "[preslip]") {
+  for (const double tolerance : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0}) {
+    PreslipCalibration<> calibration(2, {.history = 20});
+    for (Index k = 0; k < 400; ++k) {
+      const bool slips = k % 50 == 44;
+      const double moved = k % 50 == 20 ? 0.98 * tolerance : (slips ? 1.02 * tolerance : 0);
+      calibration.add(std::array{finger(20 + moved, k % 11, moved > 0 ? 2 : 0), finger(20, 0, 0)},
+                      slips);
+    }
+    const auto fit = calibration.fit();
+    CAPTURE(tolerance, fit.precision(), fit.recall());
+    CHECK(fit.ok());
+    CHECK(fit.options.centroid_tolerance_mm == tolerance);
+  }
+}
+
+TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
+  PreslipCalibration<> calibration(2, {.history = 20});
+  add_trembling(calibration, 1, 3, 25);
+  const auto fit = calibration.fit();
+  CHECK(test::begins_with(text_of(fit), "no threshold separates"));
+  CHECK(fit.precision() < 0.5);
+
+  PreslipCalibration<> none(2), all(2);
+  none.add(std::array{finger(1, 1, 2), finger(1, 1, 2)}, false);
+  all.add(std::array{finger(1, 1, 2), finger(1, 1, 2)}, true);
+  CHECK(refusal([&] { (void)none.fit(); }) ==
+        "PreslipCalibration: marked samples = 0, must be >= 1");
+  CHECK(refusal([&] { (void)all.fit(); }) ==
+        "PreslipCalibration: samples without a mark = 0, must be >= 1");
+  CHECK(test::begins_with(refusal([&] { (void)calibration.fit(1.5); }),
+                          "PreslipCalibration: min_precision = 1.5"));
+  CHECK_FALSE(calibration.add(std::array{finger(1, 1, 2)}, true));
+  CHECK(test::begins_with(refusal([] { PreslipCalibration<>(2, {.history = 1}); }),
+                          "PreslipOptions: history = 1"));
+}
+
+TEST_CASE("pre-slip calibration: nothing is compared across recordings", "[preslip]") {
+  // one sample per recording: a pair would need two
+  PreslipCalibration<> calibration(2);
+  for (int k = 0; k < 20; ++k) {
+    calibration.begin_recording();
+    calibration.add(std::array{finger(k, k, 1 + k), finger(k, k, 1 + k)}, k % 2 == 1);
+  }
+  const auto fit = calibration.fit();
+  CHECK(fit.alarms == 0);
+  CHECK(test::begins_with(text_of(fit), "no threshold separates"));
+}
+
+namespace {
+
+/// Loosens simulated fingers until the object falls, with three times the default noise. An onset
+/// is a slip less than a window ago.
+template <class Calibration>
+void add_loosening(Calibration& calibration, unsigned seed) {
+  grip::FoamFingersSetup object;
+  object.friction.factor = 0.25 + 0.05 * (seed % 4);
+  object.weight_n = 2.5 + 0.7 * (seed % 3);
+  grip::FoamFingers hand(object, seed);
+  const TaxelFeatures<> finger(object.rows, object.cols,
+                               {.pitch_mm = object.pitch_mm,
+                                .sample_period_s = 1 / object.rate_hz,
+                                .noise = object.noise_counts});
+  FoamHand<> foam({finger, finger});
+  calibration.begin_recording();
+  Index since_slip = 1000;
+  for (int k = 0; !hand.has_slipped() && k < 4000; ++k) {
+    hand.advance(object.first_force_n - 0.2 * (k / 40));
+    (void)foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
+    since_slip = hand.slipped_mm(0) > 0 || hand.slipped_mm(1) > 0 ? 0 : since_slip + 1;
+    calibration.add(foam.fingers(), since_slip < finger.options().window);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pre-slip calibration: thresholds of some objects hold for others", "[preslip]") {
+  PreslipCalibration<> lift(2);
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    add_loosening(lift, seed);
+  }
+  const auto fit = lift.fit(0.95);
+  CHECK(fit.ok());
+  CHECK(fit.precision() >= 0.95);
+  CHECK(fit.recall() >= 0.9);
+  // on objects outside the calibration
+  for (unsigned seed = 7; seed < 10; ++seed) {
+    PreslipCalibration<> unseen(2);
+    add_loosening(unseen, seed);
+    CAPTURE(seed);
+    const auto judged = unseen.judge(fit.options);
+    CHECK(judged.precision() >= 0.9);
+    CHECK(judged.recall() >= 0.9);
+  }
 }

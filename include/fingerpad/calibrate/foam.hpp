@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Noise of the taxels of a foam array, and thresholds of the pre-slip rules, from recordings. The
+// paper ("Pre-Slip Sensing Using Tactile Sensor", 2007) gives neither.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "fingerpad/calibrate/fit.hpp"
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/foam/preslip.hpp"
+#include "fingerpad/foam/taxels.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// Noise of a taxel array. Readings are in the unit of the sensor.
+template <scalar S = double>
+struct [[nodiscard]] TaxelNoise {
+  const char* cause = nullptr;  ///< likely mistake
+  /// Of each taxel, row by row, for TaxelFeatures. At least `typical`, because a constant reading
+  /// becomes noisy once the taxel is pressed; NaN: never read, a dead taxel.
+  std::vector<S> deviations;
+  S typical = S(0);        ///< root mean square over the taxels whose readings changed
+  S typical_error = S(0);  ///< its standard error, for independent Gaussian readings
+  /// Largest deviation in a window, in `deviations` of its taxel. TaxelOptions::noise_factor must
+  /// exceed it if nothing was touched.
+  S largest_factor = S(0);
+  S centroid_deviation_mm = S(0);  ///< of the centroid, in a window; NaN: never pressed
+  Index windows = 0;               ///< number of windows used
+
+  bool ok() const { return cause == nullptr; }
+};
+
+/// Collects samples of an array that is at rest for more than half of the time: medians over the
+/// windows are used, so that an occasional touch or slip does not count as noise.
+template <scalar S = double>
+class TaxelNoiseCalibration {
+ public:
+  /// Refuses bad parameters (parameter_error). Options that depend on the noise need not be set.
+  TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions& options = {})
+      : features_(rows, cols, options),
+        now_(static_cast<std::size_t>(rows * cols) + 2, S(0)),
+        window_(now_.size(), options.window),
+        spread_(now_.size(), S(0)),
+        variances_(now_.size() - 1),
+        is_bad_(variances_.size(), false) {}
+
+  /// Adds the next sample; false, and nothing changed, if the array has another size or the time is
+  /// not later. A jump of the clock begins a new window. A window with a bad reading of a taxel is
+  /// not used for this taxel.
+  template <grid Taxels>
+    requires std::constructible_from<S, cell_t<Taxels>>
+  bool add(const Taxels& taxels, double time_s) {
+    const FingerSample<S> sample = features_(taxels, time_s);
+    if (sample.status == TaxelStatus::refused) {
+      return false;
+    }
+    const bool is_new = features_.samples() == 1;
+    if (is_new || in_window_ == features_.options().window) {
+      in_window_ = 0;
+      std::fill(is_bad_.begin(), is_bad_.end(), false);
+    }
+    const auto readings = as_view(taxels);
+    const std::size_t count = is_bad_.size() - 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto at = static_cast<Index>(k), cols = features_.cols();
+      const S reading = S(readings(at / cols, at % cols));
+      keep(k, detail::is_reading(reading, features_.options()), reading);
+    }
+    keep(count, sample.is_pressed(), sample.center_x_mm);
+    now_[count + 1] = sample.is_pressed() ? sample.center_y_mm : now_[count + 1];
+    window_.push([&](std::size_t k) { return now_[k]; }, is_new);
+    if (++in_window_ == features_.options().window) {
+      judge();
+    }
+    return true;
+  }
+
+  /// Refuses a recording of less than four windows, or in which no reading changed
+  /// (parameter_error).
+  TaxelNoise<S> fit() const {
+    using std::sqrt;
+    const std::size_t count = is_bad_.size() - 1;
+    TaxelNoise<S> noise;
+    noise.windows = windows_;
+    require("TaxelNoiseCalibration", {{"windows", windows_, at_least(4)}});
+    std::vector<S> squares;
+    S sum = S(0);
+    int changed = 0, dead = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      squares.push_back(mean_square_of(variances_[k]));
+      sum = S(0) < squares[k] ? sum + squares[k] : sum;
+      changed += S(0) < squares[k] ? 1 : 0;
+    }
+    require("TaxelNoiseCalibration", {{"taxels whose readings change", changed, at_least(1)}});
+    noise.typical = sqrt(sum / S(changed));
+    // A median has pi / 2 times the variance of the mean. A mean square with f degrees of freedom
+    // has a relative variance of 2 / f, and its root half of the relative error.
+    const double freedom = (length() - 2) * static_cast<double>(windows_);
+    noise.typical_error =
+        noise.typical *
+        S(std::sqrt(std::numbers::pi / 4 / (freedom * static_cast<double>(changed))));
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool is_dead = variances_[k].empty();
+      const S own = S(0) < squares[k] ? S(sqrt(squares[k])) : S(0);
+      const S deviation = noise.typical < own ? own : noise.typical;
+      noise.deviations.push_back(is_dead ? not_a_number<S>() : deviation);
+      dead += is_dead ? 1 : 0;
+      for (const S& variance : variances_[k]) {
+        const S factor = S(0) < variance ? S(sqrt(variance) / deviation) : S(0);
+        noise.largest_factor = noise.largest_factor < factor ? factor : noise.largest_factor;
+      }
+    }
+    noise.cause = 2 * static_cast<std::size_t>(dead) > count
+                      ? "fewer than half of the taxels gave readings in range: "
+                        "check bytes, range and order"
+                      : nullptr;
+    const S centroid_sq = mean_square_of(variances_[count]);
+    noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : S(sqrt(centroid_sq));
+    return noise;
+  }
+
+ private:
+  double length() const { return static_cast<double>(features_.options().window); }
+
+  /// The reading of a taxel, or the centroid behind the last one, if it is good; else the last.
+  void keep(std::size_t k, bool is_good, const S& reading) {
+    now_[k] = is_good ? reading : now_[k];
+    is_bad_[k] = is_bad_[k] || !is_good;
+  }
+
+  /// Stores the variances of the window.
+  void judge() {
+    ++windows_;
+    window_.variances(spread_.data());
+    const std::size_t count = is_bad_.size() - 1;
+    spread_[count] = (spread_[count] + spread_[count + 1]) / S(2);
+    for (std::size_t k = 0; k <= count; ++k) {
+      if (!is_bad_[k]) {
+        variances_[k].push_back(S(0) < spread_[k] ? spread_[k] : S(0));
+      }
+    }
+  }
+
+  /// Variance from the median of the windows' mean squares; NaN if there are none. It is corrected
+  /// for the part removed by the line of each window, and for the median of a chi-square
+  /// distribution, which is below its mean.
+  S mean_square_of(std::vector<S> variances) const {
+    if (variances.empty()) {
+      return not_a_number<S>();
+    }
+    std::sort(variances.begin(), variances.end());
+    const std::size_t half = variances.size() / 2;
+    const S median = (variances[half] + variances[(variances.size() - 1) / 2]) / S(2);
+    const double freedom = length() - 2;
+    return median * S(length() / (freedom * std::pow(1 - 2 / (9 * freedom), 3)));
+  }
+
+  TaxelFeatures<S> features_;
+  std::vector<S> now_;  // the taxels, then the centroid
+  detail::TaxelWindow<S> window_;
+  std::vector<S> spread_;
+  std::vector<std::vector<S>> variances_;  // of the windows of each taxel, and of the centroid
+  std::vector<bool> is_bad_;               // in the present window
+  Index in_window_ = 0;                    // samples of the present window
+  Index windows_ = 0;
+};
+
+/// Comparison of a rule's alarms with marked onsets of slip. A rule is judged by both its recall
+/// and its precision: a rule that always alarms finds every onset.
+struct [[nodiscard]] PreslipFit {
+  static constexpr const char* onsets_not_found =
+      "no threshold separates the onsets from the rest: check the marks, or use another rule";
+
+  const char* cause = nullptr;  ///< likely mistake
+  PreslipOptions options = {};  ///< for Preslip
+  Index onsets = 0;             ///< marked samples in a row count as one
+  Index found = 0;              ///< onsets with an alarm
+  Index alarms = 0;             ///< samples with an alarm
+  Index right = 0;              ///< alarms in marked samples
+  Index samples = 0;
+  Index marked = 0;
+
+  bool ok() const { return cause == nullptr; }
+  double recall() const { return share(found, onsets); }
+  double precision() const { return share(right, alarms); }
+  /// The precision of a rule that always alarms. A useful rule has a higher `precision`.
+  double chance() const { return share(marked, samples); }
+
+ private:
+  static double share(Index part, Index whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+  }
+};
+
+/// Collects samples in which a person, or a camera, has marked the onset of slip, then finds the
+/// thresholds of the rule.
+template <scalar S = double>
+class PreslipCalibration {
+ public:
+  /// Number of fingers, and rule and history of `options`. Refuses bad parameters
+  /// (parameter_error).
+  explicit PreslipCalibration(Index fingers, const PreslipOptions& options = {})
+      : fingers_(static_cast<std::size_t>(fingers)), rule_(fingers, options) {}
+
+  /// The next sample belongs to another recording and is not compared with earlier ones.
+  void begin_recording() { begins_ = true; }
+
+  /// Adds a sample of all fingers; false, and nothing added, for another number of fingers.
+  /// `is_onset` marks the onset of slip. Mark the samples in which an alarm would be right: about a
+  /// window of samples from the first that slips.
+  bool add(std::span<const FingerSample<S>> fingers, bool is_onset) {
+    if (fingers.size() != fingers_) {
+      return false;
+    }
+    samples_.push_back({{fingers.begin(), fingers.end()}, is_onset, begins_});
+    begins_ = false;
+    return true;
+  }
+
+  /// The thresholds that find the most onsets with a precision of at least `min_precision`; of
+  /// equally good ones, the middle. Not ok() if there are none, or if the alarms are no better than
+  /// chance. Refuses (parameter_error) samples of which none, or all, are marked, and a
+  /// `min_precision` outside [0, 1]. Takes O(samples history) time, 96 times.
+  PreslipFit fit(double min_precision = 0.9) const {
+    const auto marked =
+        std::count_if(samples_.begin(), samples_.end(), [](const Marked& s) { return s.is_onset; });
+    const auto others = static_cast<Index>(samples_.size()) - marked;
+    require("PreslipCalibration", {{"min_precision", min_precision, within(0, 1)},
+                                   {"marked samples", marked, at_least(1)},
+                                   {"samples without a mark", others, at_least(1)}});
+    const auto is_better = [&](const PreslipFit& a, const PreslipFit& b) {
+      const bool a_holds = a.precision() >= min_precision, b_holds = b.precision() >= min_precision;
+      return a_holds != b_holds   ? a_holds
+             : a.found != b.found ? a.found > b.found
+                                  : a.precision() > b.precision();
+    };
+    std::vector<PreslipFit> best;  // equally good ones, with the same min_waves
+    for (Index min_waves = 0; min_waves < 8; ++min_waves) {
+      for (const double tolerance_mm : {0., 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1., 2., 3., 5., 10.}) {
+        PreslipOptions options = rule_.options();
+        options.min_waves = min_waves;
+        options.centroid_tolerance_mm = tolerance_mm;
+        const PreslipFit next = judge(options);
+        if (best.empty() || is_better(next, best.front())) {
+          best.assign(1, next);
+        } else if (!is_better(best.front(), next) && best.front().options.min_waves == min_waves) {
+          best.push_back(next);
+        }
+      }
+    }
+    PreslipFit fit = best[best.size() / 2];
+    fit.cause = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
+                    ? nullptr
+                    : PreslipFit::onsets_not_found;
+    return fit;
+  }
+
+  /// Judges given thresholds, for example from other recordings, on these samples; gives no cause.
+  /// Refuses bad parameters (parameter_error).
+  PreslipFit judge(const PreslipOptions& options) const {
+    Preslip<S> rule(static_cast<Index>(fingers_), options);
+    PreslipFit score;
+    score.options = options;
+    bool in_onset = false, is_found = false;
+    for (const Marked& s : samples_) {
+      if (s.begins) {
+        rule.reset();
+        in_onset = false;
+      }
+      const bool alarms = rule(s.fingers) == PreslipStatus::preslip;
+      const bool is_new = s.is_onset && !in_onset, is_right = alarms && s.is_onset;
+      in_onset = s.is_onset;
+      is_found = is_found && !is_new;
+      ++score.samples;
+      score.marked += s.is_onset ? 1 : 0;
+      score.onsets += is_new ? 1 : 0;
+      score.alarms += alarms ? 1 : 0;
+      score.right += is_right ? 1 : 0;
+      score.found += is_right && !is_found ? 1 : 0;
+      is_found = is_found || is_right;
+    }
+    return score;
+  }
+
+ private:
+  struct Marked {
+    std::vector<FingerSample<S>> fingers;
+    bool is_onset;
+    bool begins;
+  };
+
+  std::size_t fingers_;
+  Preslip<S> rule_;
+  std::vector<Marked> samples_;
+  bool begins_ = true;
+};
+
+}  // namespace v0
+}  // namespace fingerpad
