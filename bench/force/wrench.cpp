@@ -69,8 +69,8 @@ const std::vector<Load>& loads() {
 }
 
 template <class S>
-detail::membrane::HeightMap<S> heights_of(const Film& pad) {
-  detail::membrane::HeightMap<S> map(S(19.5), S(0.5));
+HeightMap<S> heights_of(const Film& pad) {
+  HeightMap<S> map(S(19.5), S(0.5));
   map.fill([&](Index i, Index j) { return pad(map.position_mm(j), map.position_mm(i)).height_mm; },
            [&](Index i, Index j, const auto&...) {
              return S(pad.in_contact(map.position_mm(j), map.position_mm(i)) ? 1 : 0);
@@ -80,9 +80,9 @@ detail::membrane::HeightMap<S> heights_of(const Film& pad) {
 
 /// The shapes of all loads.
 template <class S>
-const std::vector<detail::membrane::HeightMap<S>>& shapes() {
-  static const std::vector<detail::membrane::HeightMap<S>> all = [] {
-    std::vector<detail::membrane::HeightMap<S>> list;
+const std::vector<HeightMap<S>>& shapes() {
+  static const std::vector<HeightMap<S>> all = [] {
+    std::vector<HeightMap<S>> list;
     for (const Load& load : loads()) {
       list.push_back(heights_of<S>(load.pad));
     }
@@ -181,7 +181,7 @@ void add_heights(const std::string& name) {
   };
   struct InPlan {
     PadHeights<Camera<S>> heights{480, 640, Camera<S>()};
-    detail::membrane::HeightMap<S> map = heights.map();
+    HeightMap<S> map = heights.map();
   };
   const auto picture = std::make_shared<Picture>();
   const Film& pad = picture->pad;

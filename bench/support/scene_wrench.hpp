@@ -17,14 +17,14 @@ namespace bench {
 
 /// The exact heights in another scalar.
 template <class S>
-const fingerpad::detail::membrane::HeightMap<S>& scene_heights(const std::string& name) {
-  static std::map<std::string, fingerpad::detail::membrane::HeightMap<S>> all;
+const fingerpad::HeightMap<S>& scene_heights(const std::string& name) {
+  static std::map<std::string, fingerpad::HeightMap<S>> all;
   const auto found = all.find(name);
   if (found != all.end()) {
     return found->second;
   }
   const auto& exact = test::exact_heights(name);
-  fingerpad::detail::membrane::HeightMap<S> map(S(19.5), S(0.5));
+  fingerpad::HeightMap<S> map(S(19.5), S(0.5));
   const auto place = [&](fingerpad::Index k) { return exact.position_mm(k); };
   map.fill([&](auto i, auto j) { return S(exact(place(j), place(i)).height_mm); },
            [&](auto i, auto j, const auto&...) {

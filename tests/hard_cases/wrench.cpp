@@ -28,11 +28,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Any shape, in double.
 struct Shape {
-  std::function<detail::membrane::HeightAndSlope<double>(double, double)> height;
+  std::function<MembranePoint<double>(double, double)> height;
   std::function<bool(double, double)> touches;
 
   template <class S>
-  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  MembranePoint<S> operator()(const S& x, const S& y) const {
     const auto h = height(static_cast<double>(x), static_cast<double>(y));
     return {S(h.height_mm), S(h.along_x), S(h.along_y)};
   }
@@ -51,9 +51,7 @@ Shape pressed() {
 /// A pressed pad that is invisible where `lost(x, y)`.
 Shape with_hole(const std::function<bool(double, double)>& lost) {
   return {[lost](double x, double y) {
-            return lost(x, y)
-                       ? detail::membrane::HeightAndSlope<double>{test::nan, test::nan, test::nan}
-                       : film(x, y);
+            return lost(x, y) ? MembranePoint<double>{test::nan, test::nan, test::nan} : film(x, y);
           },
           [lost](double x, double y) { return !lost(x, y) && film.in_contact(x, y); }};
 }
@@ -281,9 +279,7 @@ TEST_CASE("wrench: shapes that no membrane has", "[wrench]") {
     (void)printed(shape);
   };
   const auto disc = [](double x, double y) { return std::hypot(x, y) < 8; };
-  const auto flat = [](double h, double x, double y) {
-    return detail::membrane::HeightAndSlope<double>{h, x, y};
-  };
+  const auto flat = [](double h, double x, double y) { return MembranePoint<double>{h, x, y}; };
   each({[&](double, double) { return flat(0, 0, 0); }, disc});
   each(
       {[&](double x, double y) { return flat(-film(x, y).height_mm, 0.5, 0.5); }, disc});  // a bowl
@@ -321,8 +317,8 @@ double any_number(double usual) {
 
 /// A shape of lumps, holes and slopes that need not fit the heights.
 template <class S>
-detail::membrane::HeightMap<S> any_map() {
-  detail::membrane::HeightMap<S> map(S(19.5), S(1.5));
+HeightMap<S> any_map() {
+  HeightMap<S> map(S(19.5), S(1.5));
   test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
   const double noise = test::whole(0, 1) == 0 ? 0 : test::log_uniform(1e-3, 10);
   const double holes = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 0.3);
@@ -361,7 +357,7 @@ void fuzz() {
     Wrench<S> wrench(as<S>(rim.borders()), options);
     published::SegmentEquilibrium<S> segments(as<S>(rim.borders()));
     auto fresh = wrench;
-    const detail::membrane::HeightMap<S> map = any_map<S>();
+    const HeightMap<S> map = any_map<S>();
     auto dots = rim.dots(even_load);
     const double shake = test::whole(0, 1) == 0 ? 0 : test::log_uniform(1e-3, 3);
     for (auto& p : dots.cells) {

@@ -40,7 +40,7 @@ struct Shape {
   double height = 1, slope = 1;
   bool touches = true;
 
-  detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
+  MembranePoint<double> operator()(double x, double y) const {
     const auto true_one = pad(x, y);
     return {height * true_one.height_mm, slope * true_one.along_x, slope * true_one.along_y};
   }

@@ -44,7 +44,7 @@ TEMPLATE_TEST_CASE("wrench: a frame allocates nothing",
     return to;
   };
   TestType wrench = estimator_of<TestType>(rim.borders());
-  detail::membrane::HeightMap<S> map(S(19.5), S(0.5));
+  HeightMap<S> map(S(19.5), S(0.5));
   auto dots = as(rim.dots(load));
   long taken = 0;
   int good = 0, refused = 0;

@@ -56,7 +56,7 @@ struct Lopsided {
     return {{.contact_mm =
                  contact_mm * (1 + oval * std::cos(2 * at) + triangle * std::cos(3 * at + 1))}};
   }
-  detail::membrane::HeightAndSlope<double> operator()(double x, double y) const {
+  MembranePoint<double> operator()(double x, double y) const {
     const Vector p = placed.back({x, y, 0});
     const auto h = along(std::atan2(p.y, p.x))(p.x, p.y);
     // the slope around the axis is small and left out, equally in every placement

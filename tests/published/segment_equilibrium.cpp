@@ -29,7 +29,7 @@ using Options = SegmentEquilibriumOptions<double>;
 /// A mound that is level at the rim, with its summit 2.8 mm off the middle.
 struct Mound {
   template <class S>
-  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  MembranePoint<S> operator()(const S& x, const S& y) const {
     constexpr double r = 18.735;
     const double u = value(x) / r, v = value(y) / r, lean = 1 + 0.3 * u, cap = 1 - u * u - v * v;
     return {S(9 * cap * lean), S(9 * (-2 * u * lean + 0.3 * cap) / r), S(9 * -2 * v * lean / r)};
@@ -44,7 +44,7 @@ struct Mound {
 struct Leaning {
   double side = 1;
   template <class S>
-  detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  MembranePoint<S> operator()(const S& x, const S& y) const {
     constexpr double c = 0.8, s = 0.6;
     const auto along = Mound()(S(c * x + s * side * y), S(c * side * y - s * x));
     return {along.height_mm, S(c * along.along_x - s * along.along_y),

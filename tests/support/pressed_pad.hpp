@@ -25,7 +25,7 @@ struct RoundPad : Profile {
   double y_mm = 0;
 
   template <class S>
-  fingerpad::detail::membrane::HeightAndSlope<S> operator()(const S& x, const S& y) const {
+  fingerpad::MembranePoint<S> operator()(const S& x, const S& y) const {
     const double u = static_cast<double>(x) - x_mm;
     const double v = static_cast<double>(y) - y_mm;
     const double r = std::hypot(u, v);

@@ -3,8 +3,6 @@
 #pragma once
 // The points that a camera's pixels see at given depths: point_at() of optics/camera.hpp without
 // its square roots and divisions.
-#include <type_traits>
-
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/optics/camera.hpp"
@@ -32,9 +30,6 @@ template <scalar S>
 MmPerPx<S> mm_per_px(const OrthographicCamera<S>& camera, const S&, const S&) {
   return {camera.pitch_mm, S(0)};
 }
-
-template <class CameraType>
-using camera_scalar_t = std::remove_cvref_t<decltype(CameraType::pitch_mm)>;
 
 }  // namespace detail
 }  // namespace v0

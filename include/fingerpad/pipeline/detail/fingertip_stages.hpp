@@ -363,15 +363,9 @@ struct FingertipBalance {
   bool answers(const FingertipResult& touch) const { return !balance || touch.wrench.ok(); }
 
   template <class Image, class Contact, class Executor>
-  void measure(const Image& image, const Contact& region, Executor& executor) {
+  void measure(const Image& image, const Contact& region, Executor&) {
     if (balance) {
-      executor.bands(PadHeights<>::parts, [&](int, Index first, Index last) {
-        for (Index k = first; k < last; ++k) {
-          (void)balance->heights.part(static_cast<int>(k), image.depth.view(), region.mask.view(),
-                                      balance->map);
-        }
-      });
-      balance->map.find_slopes();
+      (void)balance->heights(image.depth.view(), region.mask.view(), balance->map);
     }
   }
 
