@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -54,37 +55,6 @@ struct [[nodiscard]] IntensityFit {
 
 namespace detail {
 
-/// Normal equations, a row for each unknown: the left sides, then any number of right sides.
-template <scalar S>
-using EquationRows = std::vector<std::vector<S>>;
-
-/// Replaces the right sides by the solutions, by elimination without pivoting. False if a column is
-/// a combination of those before it.
-template <scalar S>
-bool eliminate(EquationRows<S>& row) {
-  const S least = S((std::max)(1e-12, static_cast<double>(epsilon<S>())));
-  std::vector<S> whole;
-  for (std::size_t j = 0; j < row.size(); ++j) {
-    whole.push_back(row[j][j]);
-  }
-  for (std::size_t j = 0; j < row.size(); ++j) {
-    const S pivot = row[j][j];
-    if (!(least * whole[j] < pivot)) {
-      return false;
-    }
-    for (S& x : row[j]) {
-      x /= pivot;
-    }
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const S share = row[i][j];
-      for (std::size_t k = j; k < row[i].size() && i != j; ++k) {
-        row[i][k] -= share * row[j][k];
-      }
-    }
-  }
-  return true;
-}
-
 /// A press of the ball: its image, and the ball in it.
 template <scalar S>
 struct PressedBall {
@@ -122,27 +92,24 @@ struct PressedBall {
     for (const S& l : log) {
       largest = largest < l ? l : largest;
     }
-    EquationRows<S> q(4, std::vector<S>(5, S(0)));
+    ProductSums<S, 5> sums;  // of 1, x, y, x^2 + y^2, l
     std::size_t count = 0;
     for (std::size_t k = 0; k < log.size(); ++k) {
       if (largest < S(2) * log[k]) {
         const Point2<S> p = at(k);
-        const std::array<S, 5> row = {S(1), p.x, p.y, squared_norm(p), log[k]};
-        for (std::size_t i = 0; i < 4; ++i) {
-          for (std::size_t j = 0; j < 5; ++j) {
-            q[i][j] += row[i] * row[j];
-          }
-        }
+        sums.add({S(1), p.x, p.y, squared_norm(p), log[k]});
         ++count;
       }
     }
-    if (count < min_pixels || !eliminate(q) || !(q[3][4] < S(0))) {
+    const NormalEquations<S, 4> equations(sums.template corner<4>(), 1e-12);
+    const auto q = equations.solve(sums.template column<4>(4));
+    if (count < min_pixels || !equations.good || !(q[3] < S(0))) {
       return S(0);  // the middle is not the darkest part
     }
-    const S bend = S(-2) * q[3][4];
+    const S bend = S(-2) * q[3];
     const S law_mm = S(1) / (ball.ball_mm * bend);
-    axis_mm = {q[1][4] / bend, q[2][4] / bend};
-    depth_mm = law_mm * (q[0][4] - q[3][4] * squared_norm(axis_mm));
+    axis_mm = {q[1] / bend, q[2] / bend};
+    depth_mm = law_mm * (q[0] - q[3] * squared_norm(axis_mm));
     settle();
     return S(0) < depth_mm && depth_mm < ball.ball_mm ? law_mm : S(0);
   }
@@ -165,38 +132,50 @@ struct PressedBall {
   }
 };
 
-/// A step. The unknowns are x, y and depth of each press, then the constants of the law. The right
-/// sides are the changes and the last columns of the inverse, those of the constants. Empty if a
-/// press has too few pixels or an unknown is not determined.
+/// The normal equations of a step as a triangle. The unknowns are x, y and depth of each press,
+/// then the constants of the law; the right sides are the residuals and the unit vectors of the
+/// constants, of which the solutions are the changes and the last columns of the inverse.
 template <scalar S>
-EquationRows<S> solved_step(const std::vector<PressedBall<S>>& presses,
-                            const std::array<S, 3>& law,
-                            std::size_t terms) {
-  const std::size_t poses = 3 * presses.size(), size = poses + terms;
-  EquationRows<S> row(size, std::vector<S>(size + 1 + terms, S(0)));
-  bool enough = true;
+Triangle<S> step_equations(const std::vector<PressedBall<S>>& presses,
+                           const std::array<S, 3>& law,
+                           std::size_t terms) {
+  const std::size_t poses = 3 * presses.size(), size = poses + terms, cols = size + 1 + terms;
+  std::vector<S> rows(size * cols, S(0));
   for (std::size_t p = 0; p < presses.size(); ++p) {
-    auto sums = zero_matrix<S, 7>();
-    presses[p].for_contact(law, [&](std::size_t, const std::array<S, 7>& equation) {
-      for (std::size_t i = 0; i < 7; ++i) {
-        for (std::size_t j = i; j < 7; ++j) {
-          sums[i][j] += equation[i] * equation[j];
-        }
-      }
-    });
+    ProductSums<S, 7> sums;
+    presses[p].for_contact(law, [&](std::size_t, const auto& equation) { sums.add(equation); });
     const auto place = [&](std::size_t i) { return i < 3 ? 3 * p + i : poses + i - 3; };
     for (std::size_t i = 0; i < 3 + terms; ++i) {
       for (std::size_t j = 0; j < 3 + terms; ++j) {
-        row[place(i)][place(j)] += sums[(std::min)(i, j)][(std::max)(i, j)];
+        rows[place(i) * cols + place(j)] += sums(i, j);
       }
-      row[place(i)][size] += sums[i][6];
+      rows[place(i) * cols + size] += sums(i, 6);
     }
-    enough = enough && presses[p].used.size() >= PressedBall<S>::min_pixels;
   }
   for (std::size_t k = 0; k < terms; ++k) {
-    row[poses + k][size + 1 + k] = S(1);
+    rows[(poses + k) * cols + size + 1 + k] = S(1);
   }
-  return enough && eliminate(row) ? row : EquationRows<S>();
+  return Triangle<S>(std::move(rows), cols);
+}
+
+/// Whether no press has too few pixels and no unknown depends on those before it.
+template <scalar S>
+bool are_determined(const std::vector<PressedBall<S>>& presses,
+                    const Triangle<S>& step,
+                    std::size_t terms) {
+  const S least = S((std::max)(1e-12, static_cast<double>(epsilon<S>())));
+  bool all = true;
+  for (std::size_t j = 0; j < 3 * presses.size() + terms; ++j) {
+    S column_sq = S(0);
+    for (std::size_t i = 0; i <= j; ++i) {
+      column_sq += square(step(i, j));
+    }
+    all = all && square(least) * column_sq < square(step(j, j));
+  }
+  for (const PressedBall<S>& press : presses) {
+    all = all && press.used.size() >= PressedBall<S>::min_pixels;
+  }
+  return all;
 }
 
 /// Gauss-Newton steps on the law and the balls; false if they do not converge.
@@ -205,14 +184,16 @@ bool fit_law(std::vector<PressedBall<S>>& presses, std::array<S, 3>& law, std::s
   constexpr int max_steps = 50, settling_steps = 10;  // in which the contact may change
   const S settled_mm = S((std::max)(scalar_real_t<S>(1e-7), scalar_real_t<S>(1000) * epsilon<S>()));
   for (int step = 0; step < max_steps; ++step) {
-    const EquationRows<S> row = solved_step(presses, law, terms);
-    if (row.empty()) {
+    const Triangle<S> equations = step_equations(presses, law, terms);
+    if (!are_determined(presses, equations, terms)) {
       return false;
     }
+    const std::size_t size = 3 * presses.size() + terms;
+    const std::vector<S> changes = equations.solve(size, size);
     bool settled = true;
-    std::size_t i = 0;
+    auto next = changes.begin();
     const auto move = [&](S& x) {
-      const S change = row[i++][row.size()];
+      const S change = *next++;
       settled = settled && -settled_mm < change && change < settled_mm;
       x -= change;
     };
@@ -270,13 +251,11 @@ IntensityFit<S> fit_intensity(const Free& free,
   law[0] /= S(static_cast<double>(presses.size()));
 
   IntensityFit<S> fit;
-  const auto all = static_cast<std::size_t>(terms);
-  detail::EquationRows<S> row;
+  const auto all = static_cast<std::size_t>(terms), size = 3 * presses.size() + all;
   // one constant is fitted together with the contact, which stays fixed for three
-  if (fit_law(presses, law, 1) && (all == 1 || fit_law(presses, law, all))) {
-    row = solved_step(presses, law, all);
-  }
-  if (row.empty()) {
+  const bool converged = fit_law(presses, law, 1) && (all == 1 || fit_law(presses, law, all));
+  const detail::Triangle<S> equations = step_equations(presses, law, all);
+  if (!converged || !are_determined(presses, equations, all)) {
     fit.cause = cause::not_converged;
     return fit;
   }
@@ -302,9 +281,10 @@ IntensityFit<S> fit_intensity(const Free& free,
     fit.max_depth_mm = (std::max)(fit.max_depth_mm, press.depth_mm);
   }
   fit.mean_error_mm /= pixels;
-  for (std::size_t i = 0; i < all; ++i) {
-    for (std::size_t j = 0; j < all; ++j) {
-      fit.covariance[i][j] = blocks_sq / pixels * row[3 * presses.size() + i][row.size() + 1 + j];
+  for (std::size_t j = 0; j < all; ++j) {
+    const std::vector<S> column = equations.solve(size, size + 1 + j);
+    for (std::size_t i = 0; i < all; ++i) {
+      fit.covariance[i][j] = blocks_sq / pixels * column[size - all + i];
     }
   }
   if (fit.max_depth_mm < S(0.05)) {
