@@ -251,7 +251,7 @@ IntensityFit<S> fit_intensity(const Free& free,
   law[0] /= S(static_cast<double>(presses.size()));
 
   IntensityFit<S> fit;
-  const auto all = static_cast<std::size_t>(terms), size = 3 * presses.size() + all;
+  const auto all = static_cast<std::size_t>(terms), unknowns = 3 * presses.size() + all;
   // one constant is fitted together with the contact, which stays fixed for three
   const bool converged = fit_law(presses, law, 1) && (all == 1 || fit_law(presses, law, all));
   const detail::Triangle<S> equations = step_equations(presses, law, all);
@@ -282,9 +282,9 @@ IntensityFit<S> fit_intensity(const Free& free,
   }
   fit.mean_error_mm /= pixels;
   for (std::size_t j = 0; j < all; ++j) {
-    const std::vector<S> column = equations.solve(size, size + 1 + j);
+    const std::vector<S> column = equations.solve(unknowns, unknowns + 1 + j);
     for (std::size_t i = 0; i < all; ++i) {
-      fit.covariance[i][j] = blocks_sq / pixels * column[size - all + i];
+      fit.covariance[i][j] = blocks_sq / pixels * column[unknowns - all + i];
     }
   }
   if (fit.max_depth_mm < S(0.05)) {
