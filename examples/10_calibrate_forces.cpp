@@ -15,14 +15,13 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
+#include "fingerpad/force/look_up.hpp"
 
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;
 using LeftOut = fingerpad::CrossValidation<double>;
-constexpr int curve_degree = 3;  // of the normal force's polynomial
+constexpr std::size_t curve_degree = 3;  // of the normal force's polynomial
 
 /// A measure of the contact's size, by which forces are looked up.
 struct Measure {
@@ -87,19 +86,18 @@ void warn(const char* what, const char* by, const Fit& fit) {
 }
 
 struct Normal {
-  fingerpad::NormalForceFit<fingerpad::PolynomialForce<curve_degree>> fit;
+  fingerpad::NormalForceFit<> fit;
   LeftOut left_out;
 };
 
 /// Compensates for displacement and rotation if that reduces the error for loads left out.
 Normal fit_normal(Samples samples, const Measure& by) {
   const auto fitted = [&](bool compensated) {
-    const fingerpad::CurveOptions options{.displaced = compensated, .rotated = compensated};
-    const auto fit = [&](Samples some) {
-      return fingerpad::fit_normal_force<curve_degree>(some, options);
-    };
+    const fingerpad::CurveOptions options{
+        .degree = curve_degree, .displaced = compensated, .rotated = compensated};
+    const auto fit = [&](Samples some) { return fingerpad::fit_normal_force(some, options); };
     const auto error = [](const auto& model, const Sample& s) {
-      const fingerpad::NormalForce force(model.curve, model.compensation);
+      const fingerpad::NormalForce force(model.curve);
       return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
     };
     return Normal{fit(samples), fingerpad::leave_one_load_out(samples, fit, error)};
@@ -112,13 +110,13 @@ Normal fit_normal(Samples samples, const Measure& by) {
               curve.from, curve.to, by.unit);
   for (std::size_t k = 1; k <= curve_degree; ++k) {
     const char name[] = {'c', static_cast<char>('0' + k), '\0'};
-    print(name, curve.coefficients[k], std::sqrt(best.fit.errors.covariance[k][k]));
+    print(name, curve.coefficients[k], std::sqrt(best.fit.curve.covariance[k][k]));
   }
   if (best.fit.per_mm_sq_sd > 0) {
-    print("per_mm_sq, 1/mm^2", best.fit.compensation.per_mm_sq, best.fit.per_mm_sq_sd);
-    print("per_rad_sq, 1/rad^2", best.fit.compensation.per_rad_sq, best.fit.per_rad_sq_sd);
+    print("per_mm_sq, 1/mm^2", best.fit.curve.per_mm_sq, best.fit.per_mm_sq_sd);
+    print("per_rad_sq, 1/rad^2", best.fit.curve.per_rad_sq, best.fit.per_rad_sq_sd);
   }
-  print("N", best.fit.errors.residual_sd_n, best.left_out);
+  print("N", best.fit.curve.residual_sd_n, best.left_out);
   return best;
 }
 
@@ -137,10 +135,9 @@ Shear fit_shear(Samples samples, const Measure& by) {
   warn("tangential force", by.name, all.force);
   warn("moment", by.name, all.moment);
   const auto fit = [&](Samples some) {
-    const auto force = fit_tangential_force(some, by.reference, all.force.exponent);
-    const auto moment = fit_moment(some, by.reference, all.moment.exponent);
-    return fingerpad::Shear<>({by.reference, force.exponent, moment.exponent},
-                              {force.polynomial, moment.polynomial});
+    const auto force = fit_tangential_force(some, by.reference, all.force.law.exponent);
+    const auto moment = fit_moment(some, by.reference, all.moment.law.exponent);
+    return fingerpad::Shear<>({by.reference, force.law, moment.law});
   };
   all.force_left_out = leave_one_load_out(samples, fit, [](const auto& shear, const Sample& s) {
     const auto told = shear(s.measure, s.displacement_mm, s.rotation_rad).tangential_force_n;
@@ -151,12 +148,12 @@ Shear fit_shear(Samples samples, const Measure& by) {
   });
   std::printf("tangential force by displacement and %s over %g %s\n", by.name, by.reference,
               by.unit);
-  print("N/mm", all.force.polynomial.coefficients[0], all.force.standard_errors[0]);
-  print("exponent", all.force.exponent, all.force.exponent_sd);
+  print("N/mm", all.force.law.coefficients[0], all.force.coefficient_sd(0));
+  print("exponent", all.force.law.exponent, all.force.exponent_sd());
   print("N", all.force.residual_sd, all.force_left_out);
   std::printf("moment by rotation and %s over %g %s\n", by.name, by.reference, by.unit);
-  print("N mm/rad", all.moment.polynomial.coefficients[0], all.moment.standard_errors[0]);
-  print("exponent", all.moment.exponent, all.moment.exponent_sd);
+  print("N mm/rad", all.moment.law.coefficients[0], all.moment.coefficient_sd(0));
+  print("exponent", all.moment.law.exponent, all.moment.exponent_sd());
   print("N mm", all.moment.residual_sd, all.moment_left_out);
   return all;
 }
@@ -170,17 +167,16 @@ void print_section(const Normal& normal, const Measure& by) {
   std::printf("], \"from_%s\": %.4g, \"to_%s\": %.4g,\n", by.unit, fit.curve.from, by.unit,
               fit.curve.to);
   std::printf("    \"per_mm_sq\": %.4g, \"per_rad_sq\": %.4g, \"residual_n\": %.3g },\n",
-              fit.compensation.per_mm_sq, fit.compensation.per_rad_sq, fit.errors.residual_sd_n);
+              fit.curve.per_mm_sq, fit.curve.per_rad_sq, fit.curve.residual_sd_n);
 }
 
 void print_section(const Shear& shear, const Measure& by) {
   std::printf("  \"shear\": { \"by\": \"%s\", \"reference\": %g,\n", by.name, by.reference);
   std::printf("    \"displacement_exponent\": %.4f, \"force_n_per_mm\": [%.5g], \"to_mm\": %.4g,\n",
-              shear.force.exponent, shear.force.polynomial.coefficients[0],
-              shear.force.polynomial.to);
+              shear.force.law.exponent, shear.force.law.coefficients[0], shear.force.law.to);
   std::printf(
       "    \"rotation_exponent\": %.4f, \"moment_n_mm_per_rad\": [%.5g], \"to_rad\": %.4g }",
-      shear.moment.exponent, shear.moment.polynomial.coefficients[0], shear.moment.polynomial.to);
+      shear.moment.law.exponent, shear.moment.law.coefficients[0], shear.moment.law.to);
 }
 
 int main(int argc, char** argv) {

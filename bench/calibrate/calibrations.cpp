@@ -22,10 +22,9 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "examples/replay_many/trials.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "support/contact_records.hpp"
 #include "support/pad.hpp"
@@ -63,36 +62,6 @@ void add_trial(const std::string& name) {
         if (!errors.empty()) {
           bench::note_errors(counters, "parameters", "share", errors);
         }
-      });
-}
-
-/// Radii of an elastic pad under 0.2 to 8 N, r = 6 F^(1/3) mm, with 1 % of noise.
-Samples pressed(std::uint64_t seed) {
-  test::Random random(seed);
-  Samples samples;
-  for (int k = 0; k < 40; ++k) {
-    ForceSample<double> s;
-    s.normal_force_n = 0.2 * (k + 1);
-    s.measure = 6 * std::cbrt(s.normal_force_n) * (1 + 0.01 * random.normal());
-    s.load = k;
-    samples.push_back(s);
-  }
-  return samples;
-}
-void add_power_law() {
-  const bench::Memory memory;
-  const auto samples = std::make_shared<Samples>(pressed(1));
-  bench::add(
-      "a sensor of numbers/power law", 1, memory.bytes(),
-      [=] { benchmark::DoNotOptimize(fit_power_law(span_of(*samples))); },
-      [=](auto& counters) {
-        std::vector<double> errors;
-        for (std::uint64_t seed = 2; seed < 102; ++seed) {
-          const auto found = fit_power_law(span_of(pressed(seed)));
-          errors.push_back(found.curve.coefficient_mm / 6 - 1);
-          errors.push_back(3 * found.curve.exponent - 1);
-        }
-        bench::note_errors(counters, "parameters", "share", errors);
       });
 }
 
@@ -185,53 +154,32 @@ void add_look_up(const std::string& name,
       });
 }
 
-template <int Degree>
 void add_normal(const std::string& name,
                 ContactMeasure measure,
                 const Pairs& pairs,
                 const CurveOptions& options = {}) {
   const auto fit = [=](const Samples& samples) {
-    return fit_normal_force<Degree>(span_of(samples), options);
+    return fit_normal_force(span_of(samples), options);
   };
   const auto error = [](const auto& found, const ForceSample<double>& s) {
-    const NormalForce force(found.curve, found.compensation);
+    const NormalForce force(found.curve);
     return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
   };
   add_look_up(name, "normal force", "N", pairs,
               OnScenes<decltype(fit), decltype(error)>{measure, ContactDotsOf::edge, fit, error});
 }
 
-/// Power law of the radius of a disc with the contact's area.
-void add_power_law(const std::string& name, const Pairs& pairs) {
-  const auto radius = [](double area_mm2) { return std::sqrt(area_mm2 / 3.141592653589793); };
-  const auto fit = [=](Samples samples) {
-    for (auto& s : samples) {
-      s.measure = radius(s.measure);
-    }
-    return fit_power_law(span_of(samples));
-  };
-  const auto error = [=](const auto& found, const ForceSample<double>& s) {
-    const NormalForce force(found.curve);
-    return force(radius(s.measure)).force_n - s.normal_force_n;
-  };
-  add_look_up(name, "normal force", "N", pairs,
-              OnScenes<decltype(fit), decltype(error)>{ContactMeasure::area, ContactDotsOf::edge,
-                                                       fit, error});
-}
-
-template <int Degree>
 void add_tangential(const std::string& name,
                     ContactMeasure measure,
                     ContactDotsOf dots,
-                    const std::optional<double>& exponent = {}) {
+                    const std::optional<double>& exponent = {},
+                    int degree = 1) {
   const double reference = measure == ContactMeasure::depth ? 10 : 100;
   const auto fit = [=](const Samples& samples) {
-    return fit_tangential_force<Degree>(span_of(samples), reference, exponent);
+    return fit_tangential_force(span_of(samples), reference, exponent, {}, degree);
   };
   const auto error = [=](const auto& found, const ForceSample<double>& s) {
-    RadialShear<Degree> map;
-    map.force = map.moment = found.polynomial;
-    const Shear<RadialShear<Degree>> shear({reference, found.exponent, 0}, map);
+    const Shear<> shear({reference, found.law, found.law});
     const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
     return std::hypot(f.x - s.tangential_force_n.x, f.y - s.tangential_force_n.y);
   };
@@ -244,12 +192,10 @@ void add_moment(const std::string& name,
                 ContactDotsOf dots,
                 const std::optional<double>& exponent = {}) {
   const auto fit = [=](const Samples& samples) {
-    return fit_moment<1>(span_of(samples), 100.0, exponent);
+    return fit_moment(span_of(samples), 100.0, exponent);
   };
   const auto error = [](const auto& found, const ForceSample<double>& s) {
-    RadialShear<1> map;
-    map.force = map.moment = found.polynomial;
-    const Shear<RadialShear<1>> shear({100.0, 0, found.exponent}, map);
+    const Shear<> shear({100.0, found.law, found.law});
     return shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm;
   };
   add_look_up(name, "moment", "N mm", {{{"mix"}, "twist"}},
@@ -263,7 +209,6 @@ int main(int argc, char** argv) {
   for (const std::string& name : replay_many::trial_names()) {
     add_trial(name);
   }
-  add_power_law();
   add_references();
   const Pairs plates = {{{"drag", "twist", "mix"}, "press"},
                         {{"press", "twist", "mix"}, "drag"},
@@ -272,19 +217,18 @@ int main(int argc, char** argv) {
   const Pairs press = {{{"press"}, "drag"}, {{"press"}, "twist"}, {{"press"}, "mix"}};
   constexpr auto area = ContactMeasure::area, depth = ContactMeasure::depth;
   constexpr auto edge = ContactDotsOf::edge, center = ContactDotsOf::center;
-  add_normal<2>("area, degree 2, published", area, press, {.through_zero = false});
-  add_normal<2>("depth, degree 2, published", depth, press, {.through_zero = false});
-  add_normal<2>("area, degree 2", area, plates);
-  add_normal<3>("area, degree 3", area, plates);
-  add_normal<5>("area, degree 5", area, plates);
-  add_normal<3>("depth, degree 3", depth, plates);
-  add_normal<3>("area, ScaledCompensation", area, plates, {.displaced = true, .rotated = true});
-  add_power_law("area, power law", plates);
-  add_power_law("area, power law, by the press alone", press);
-  add_tangential<1>("central dot, published", area, center, 0.65);
-  add_tangential<1>("edge dots, area", area, edge);
-  add_tangential<1>("edge dots, depth", depth, edge);
-  add_tangential<2>("edge dots, degree 2", area, edge);
+  add_normal("area, degree 2, published", area, press, {.through_zero = false});
+  add_normal("depth, degree 2, published", depth, press, {.through_zero = false});
+  add_normal("area, degree 2", area, plates);
+  add_normal("area, degree 3", area, plates, {.degree = 3});
+  add_normal("area, degree 5", area, plates, {.degree = 5});
+  add_normal("depth, degree 3", depth, plates, {.degree = 3});
+  add_normal("area, ScaledCompensation", area, plates,
+             {.degree = 3, .displaced = true, .rotated = true});
+  add_tangential("central dot, published", area, center, 0.65);
+  add_tangential("edge dots, area", area, edge);
+  add_tangential("edge dots, depth", depth, edge);
+  add_tangential("edge dots, degree 2", area, edge, {}, 2);
   add_moment("central dot, published", center, 1.7);
   add_moment("edge dots", edge);
   return bench::run(argc, argv);

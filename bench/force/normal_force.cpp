@@ -4,8 +4,6 @@
 // 21 without checks of range, contact or bad input. Error of each contact: rounding, against long
 // double, relative to the largest force; of "as printed", against itself. The error of the curve
 // itself depends on its calibration: docs/force/normal_force.md has it for finite elements.
-#include "fingerpad/force/normal_force.hpp"
-
 #include <cmath>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -15,7 +13,9 @@
 
 #include "bench/support/contacts.hpp"
 #include "bench/support/run.hpp"
-#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/force/look_up.hpp"
+#include "fingerpad/published/look_up.hpp"
+#include "support/curves.hpp"
 
 using namespace fingerpad;
 
@@ -79,18 +79,35 @@ void add_plain(const std::string& type,
 }
 
 template <class S>
-constexpr ScaledCompensation<S> scaling{S(-0.02), S(0.5)};
+ForceCurve<S> compensated(ForceCurve<S> curve) {
+  curve.per_mm_sq = S(-0.02);
+  curve.per_rad_sq = S(0.5);
+  return curve;
+}
 
-template <std::size_t Size, class S>
-CurveErrors<Size, S> some_errors() {
-  CurveErrors<Size, S> errors;
+template <class S>
+ForceCurve<S> with_errors(ForceCurve<S> curve) {
   S variance = S(1e-4);
-  for (std::size_t k = 0; k < Size; ++k) {
-    errors.covariance[k][k] = variance;
+  for (std::size_t k = 0; k < 3; ++k) {
+    curve.covariance[k][k] = variance;
     variance *= S(1e-2);
   }
-  errors.residual_sd_n = S(0.1);
-  return errors;
+  curve.residual_sd_n = S(0.1);
+  return curve;
+}
+
+template <class S>
+ForceCurve<S> rising(int degree) {
+  ForceCurve<S> curve;
+  S term = S(1e-5);
+  curve.coefficients[1] = S(0.02);
+  for (int k = 2; k <= degree; ++k) {
+    curve.coefficients[static_cast<std::size_t>(k)] = term;
+    term *= k == 2 ? S(1e-2) : S(1e-3);
+  }
+  curve.from = S(0);
+  curve.to = S(largest_mm2);
+  return curve;
 }
 
 /// The quadratic of eq. 18.
@@ -126,39 +143,26 @@ void add_all(const std::string& type) {
     };
   });
   add_plain<S>(type, "NoCompensation",
-               []<class T>(T) { return NormalForce(published::force_of_area<T>()); });
+               []<class T>(T) { return NormalForce(test::curve_of_area<T>()); });
   add_plain<S>(type, "ScaledCompensation",
-               []<class T>(T) { return NormalForce(published::force_of_area<T>(), scaling<T>); });
-  add_plain<S>(type, "published::Compensation, published", []<class T>(T) {
-    return NormalForce(published::force_of_area<T>(), published::compensation_by_area<T>());
+               []<class T>(T) { return NormalForce(compensated(test::curve_of_area<T>())); });
+  add_each<S>(single + "/published::NormalForce, published", largest_mm2,
+              []<class T>(T) { return published::normal_force_by_area<T>(); });
+  add_each<S>(single + "/published::NormalForce by depth, published", largest_depth_mm,
+              []<class T>(T) { return published::normal_force_by_depth<T>(); });
+  add_plain<S>(type, "PolynomialForce<3>", []<class T>(T) { return NormalForce(rising<T>(3)); });
+  add_plain<S>(type, "PolynomialForce<5>", []<class T>(T) { return NormalForce(rising<T>(5)); });
+  add_each<S>(single + "/power law, published", largest_radius_mm, [](auto) {
+    return []<class T>(const T& radius_mm, const Point2<T>&, const T&) {
+      return radius_mm > T(0) ? published::force_of_radius_n(radius_mm, T(6), T(1) / T(3)) : T(0);
+    };
   });
-  add_plain<S>(
-      type, "published::Compensation by depth, published",
-      []<class T>(T) {
-        return NormalForce(published::force_of_depth<T>(), published::compensation_by_depth<T>());
-      },
-      largest_depth_mm);
-  add_plain<S>(type, "PolynomialForce<3>", []<class T>(T) {
-    return NormalForce(
-        PolynomialForce<3, T>{{T(0), T(0.02), T(1e-5), T(1e-7)}, T(0), T(largest_mm2)});
-  });
-  add_plain<S>(type, "PolynomialForce<5>", []<class T>(T) {
-    return NormalForce(PolynomialForce<5, T>{
-        {T(0), T(0.02), T(1e-5), T(1e-7), T(1e-10), T(1e-13)}, T(0), T(largest_mm2)});
-  });
-  add_plain<S>(
-      type, "PowerLawForce",
-      []<class T>(T) {
-        const T third = T(1) / T(3);
-        return NormalForce(PowerLawForce<T>{T(6), third, T(0), T(largest_radius_mm)});
-      },
-      largest_radius_mm);
   add_each<S>(single + "/ScaledCompensation, variance", largest_mm2, []<class T>(T) {
-    return number_of(NormalForce(published::force_of_area<T>(), scaling<T>, some_errors<3, T>()));
+    return number_of(NormalForce(with_errors(compensated(test::curve_of_area<T>()))));
   });
   add_each<S>(single + "/fused, by area and by depth", largest_mm2, []<class T>(T) {
-    const NormalForce by_area(published::force_of_area<T>(), scaling<T>, some_errors<3, T>());
-    const NormalForce by_depth(published::force_of_depth<T>(), scaling<T>, some_errors<3, T>());
+    const NormalForce by_area(with_errors(compensated(test::curve_of_area<T>())));
+    const NormalForce by_depth(with_errors(compensated(test::curve_of_depth<T>())));
     return [=](const T& area, const Point2<T>& d, const T& angle) {
       return fused(by_area(area, d, angle), by_depth(area / T(80), d, angle)).force_n;
     };

@@ -5,19 +5,20 @@
 // Errors: of each contact's moment and of the force along x, against long double, relative to the
 // largest. "with normal force": additionally the normal force by area and by depth, fused by their
 // variances.
-#include "fingerpad/force/shear.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "bench/support/contacts.hpp"
 #include "bench/support/run.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
+#include "fingerpad/published/look_up.hpp"
+#include "support/curves.hpp"
 
 using namespace fingerpad;
 
@@ -40,10 +41,10 @@ struct Out {
   }
 };
 
-template <class S, class Map>
+template <class S>
 void note_shear(bench::Counters& counters,
                 bench::Contacts<S>& contacts,
-                const Shear<Map>& truth,
+                const Shear<Long>& truth,
                 const Out<S>& out) {
   std::vector<Long> moments, forces;
   for (Index k = 0; k < contacts.frames; ++k) {
@@ -63,10 +64,10 @@ std::string row(const std::string& name) {
 }
 
 /// Calls `of(measure, displacement, angle, row of three results)` for each contact.
-template <class S, class Work, class Map>
+template <class S, class Work>
 void add_each(const std::string& name,
               const Work& of,
-              const Shear<Map>& truth,
+              const Shear<Long>& truth,
               double largest = largest_mm2) {
   const auto contacts = std::make_shared<bench::Contacts<S>>(largest);
   const bench::Memory memory;
@@ -90,10 +91,10 @@ void fill(const Result& result, const To& to, Index k) {
   to(k, 2) = result.moment_n_mm;
 }
 
-template <class S, class Map, class TrueMap>
+template <class S>
 void add_shear(const std::string& name,
-               const Shear<Map>& shear,
-               const Shear<TrueMap>& truth,
+               const Shear<S>& shear,
+               const Shear<Long>& truth,
                double largest = largest_mm2) {
   add_each<S>(
       name,
@@ -104,35 +105,41 @@ void add_shear(const std::string& name,
 }
 
 template <class S>
-RadialShear<1, S> linear() {
-  return {{{S(2)}, not_a_number<S>()}, {{S(250)}, not_a_number<S>()}};
+ShearMap<S> curved(ShearMap<S> map) {
+  map.force.coefficients[1] = -S(1) / S(8);
+  map.force.to = S(3);
+  map.moment.coefficients[1] = S(10);
+  map.moment.to = S(1);
+  return map;
 }
 template <class S>
-RadialShear<2, S> curved() {
-  return {{{S(2), -S(1) / S(8)}, S(3)}, {{S(250), S(10)}, S(1)}};
-}
-template <class S>
-LinearShear<S> any_linear() {
-  return {S(2), S(0.25), S(-0.25), S(1.5), {S(0), S(0)}, S(250), S(0)};
+ShearMap<S> any_linear(ShearMap<S> map) {
+  map.x_by_y = S(0.125);
+  map.y_by_x = S(-0.125);
+  map.y_by_y = S(0.75);
+  return map;
 }
 
 /// The constants in the truth are also those of S.
 template <class S>
-ShearNormalisation<Long> exactly(const ShearNormalisation<S>& n) {
-  return {Long(n.reference), Long(n.displacement_exponent), Long(n.rotation_exponent)};
+ShearMap<Long> exactly(const ShearMap<S>& m) {
+  const auto law = [](const ShearLaw<S>& of) {
+    ShearLaw<Long> exact;
+    std::copy(of.coefficients.begin(), of.coefficients.end(), exact.coefficients.begin());
+    exact.exponent = of.exponent;
+    exact.to = of.to;
+    return exact;
+  };
+  return {m.reference, law(m.force), law(m.moment), m.x_by_x, m.x_by_y, m.y_by_x, m.y_by_y};
 }
 
 template <class S>
 void add_all() {
-  const auto by_area = published::shear_normalisation_by_area<S>(),
-             by_depth = published::shear_normalisation_by_depth<S>();
-  const auto by_radius = shear_by_radius<S>(S(6));
-  const Shear shear(by_area, linear<S>());
-  const Shear shear_curved(by_area, curved<S>());
-  const Shear truth(exactly(by_area), linear<Long>());
-  const Shear truth_curved(exactly(by_area), curved<Long>());
-  const Shear shear_any(by_area, any_linear<S>());
-  const Shear truth_any(exactly(by_area), any_linear<Long>());
+  const auto by_area = test::map_of(published::shear_by_area(S(2), S(250)));
+  const auto by_depth = test::map_of(published::shear_by_depth(S(2), S(250)));
+  const auto by_radius = test::straight_map(S(6), S(1), S(3), S(2), S(250));
+  const Shear shear(by_area);
+  const Shear truth(exactly(by_area));
   add_each<S>(
       "published: as printed",
       [](const S& area, const Point2<S>& d, const S& theta, const auto& to, Index k) {
@@ -143,15 +150,22 @@ void add_all() {
       },
       truth);
   add_shear<S>("RadialShear<1>, the default", shear, truth);
-  add_shear<S>("RadialShear<2>", shear_curved, truth_curved);
-  add_shear<S>("LinearShear", shear_any, truth_any);
-  add_shear<S>("RadialShear<1> by depth", Shear(by_depth, linear<S>()),
-               Shear(exactly(by_depth), linear<Long>()), largest_mm);
-  add_shear<S>("RadialShear<1> by radius", Shear(by_radius, linear<S>()),
-               Shear(exactly(by_radius), linear<Long>()), largest_mm);
-  const CurveErrors<3, S> errors{{{{S(1e-4), 0, 0}, {0, S(1e-6), 0}, {0, 0, S(1e-9)}}}, S(0.1)};
-  const NormalForce force_by_area(published::force_of_area<S>(), ScaledCompensation<S>{}, errors);
-  const NormalForce force_by_depth(published::force_of_depth<S>(), ScaledCompensation<S>{}, errors);
+  for (const auto& [name, map, largest] :
+       {std::tuple{"RadialShear<2>", curved(by_area), largest_mm2},
+        {"LinearShear", any_linear(by_area), largest_mm2},
+        {"RadialShear<1> by depth", by_depth, largest_mm},
+        {"RadialShear<1> by radius", by_radius, largest_mm}}) {
+    add_shear<S>(name, Shear(map), Shear(exactly(map)), largest);
+  }
+  const auto with_errors = [](ForceCurve<S> curve) {
+    curve.covariance[0][0] = S(1e-4);
+    curve.covariance[1][1] = S(1e-6);
+    curve.covariance[2][2] = S(1e-9);
+    curve.residual_sd_n = S(0.1);
+    return curve;
+  };
+  const NormalForce force_by_area(with_errors(test::curve_of_area<S>()));
+  const NormalForce force_by_depth(with_errors(test::curve_of_depth<S>()));
   add_each<S>(
       "with normal force",
       [=](const S& area, const Point2<S>& d, const S& theta, const auto& to, Index k) {

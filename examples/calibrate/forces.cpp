@@ -14,7 +14,7 @@
 
 #include "calibrate/calibrations.hpp"
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
@@ -29,7 +29,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::span<const Sample>;
-using NormalFit = fingerpad::NormalForceFit<fingerpad::PolynomialForce<3>>;
+using NormalFit = fingerpad::NormalForceFit<>;
 
 /// A table accessed by column names; NaN for an empty cell or a missing column.
 class Columns {
@@ -119,21 +119,21 @@ double unseen(Samples samples, const Fit& fit, const ErrorOf& error_of) {
 }
 
 void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
-  const auto fit_of = [](Samples some) { return fingerpad::fit_normal_force<3>(some); };
+  const auto fit_of = [](Samples some) { return fingerpad::fit_normal_force(some, {.degree = 3}); };
   const NormalFit fit = fit_of(samples);
   const double unseen_n = unseen(samples, fit_of, [](const NormalFit& model, const Sample& s) {
     return model.curve.force_n(s.measure) - s.normal_force_n;
   });
   Report report{.what = std::string("force_by_") + by.name,
-                .residual = fit.errors.residual_sd_n,
+                .residual = fit.curve.residual_sd_n,
                 .residual_unit = "N"};
   nlohmann::json coefficients = nlohmann::json::array();
   for (std::size_t k = 0; k <= 3; ++k) {
     coefficients.push_back(fit.curve.coefficients[k]);
     report.parameters.push_back({"coefficient_" + std::to_string(k), fit.curve.coefficients[k],
-                                 std::sqrt(fit.errors.covariance[k][k])});
-    const auto& row = fit.errors.covariance[k];
-    report.covariance.push_back({row.begin(), row.end()});
+                                 std::sqrt(fit.curve.covariance[k][k])});
+    const auto& row = fit.curve.covariance[k];
+    report.covariance.push_back({row.begin(), row.begin() + 4});
   }
   const double largest_n = fit.curve.force_n(fit.curve.to);
   report.parameters.push_back({std::string("from_") + by.unit, fit.curve.from});
@@ -148,7 +148,7 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
       {"coefficients", coefficients},
       {std::string("from_") + by.unit, fit.curve.from},
       {std::string("to_") + by.unit, fit.curve.to},
-      {"residual_n", fit.errors.residual_sd_n},
+      {"residual_n", fit.curve.residual_sd_n},
       {"covariance", report.covariance}};
   Plot plot{std::string("contact ") + by.name + " [" + by.unit + "]", "normal force [N]", {}};
   for (const auto& r : fit.residuals) {
@@ -163,10 +163,10 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   const auto moment = fingerpad::fit_moment(samples, by.reference);
   Report report{.what = "shear", .residual = force.residual_sd, .residual_unit = "N"};
   report.parameters = {
-      {"force_n_per_mm", force.polynomial.coefficients[0], force.standard_errors[0]},
-      {"displacement_exponent", force.exponent, force.exponent_sd},
-      {"moment_n_mm_per_rad", moment.polynomial.coefficients[0], moment.standard_errors[0]},
-      {"rotation_exponent", moment.exponent, moment.exponent_sd},
+      {"force_n_per_mm", force.law.coefficients[0], force.coefficient_sd(0)},
+      {"displacement_exponent", force.law.exponent, force.exponent_sd()},
+      {"moment_n_mm_per_rad", moment.law.coefficients[0], moment.coefficient_sd(0)},
+      {"rotation_exponent", moment.law.exponent, moment.exponent_sd()},
       {"residual_of_the_moment_n_mm", moment.residual_sd}};
   if (std::isfinite(force.gauge_angle_sd_rad)) {
     constexpr double degrees = 57.29577951308232;
@@ -175,15 +175,14 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   }
   report.doubt(!force.ok(), std::string("for the force, ") + text_of(force));
   report.doubt(!moment.ok(), std::string("for the moment, ") + text_of(moment));
-  outcome.sections["force"]["shear"] = {
-      {"by", by.name},
-      {"reference", by.reference},
-      {"displacement_exponent", force.exponent},
-      {"force_n_per_mm", {force.polynomial.coefficients[0]}},
-      {"to_mm", force.polynomial.to},
-      {"rotation_exponent", moment.exponent},
-      {"moment_n_mm_per_rad", {moment.polynomial.coefficients[0]}},
-      {"to_rad", moment.polynomial.to}};
+  outcome.sections["force"]["shear"] = {{"by", by.name},
+                                        {"reference", by.reference},
+                                        {"displacement_exponent", force.law.exponent},
+                                        {"force_n_per_mm", {force.law.coefficients[0]}},
+                                        {"to_mm", force.law.to},
+                                        {"rotation_exponent", moment.law.exponent},
+                                        {"moment_n_mm_per_rad", {moment.law.coefficients[0]}},
+                                        {"to_rad", moment.law.to}};
   Plot plot{"displacement of the contact [mm]", "tangential force (x and y) [N]", {}};
   bool is_x = true;
   for (const auto& r : force.residuals) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "loads.hpp"
 #include "replay/io/failure.hpp"
@@ -103,9 +103,11 @@ void print_row(const char* name, const Displaced& samples, const Fit& fit) {
 
 auto linear_map(bool robust) {
   return [robust](std::span<const ForceSample<double>> samples) {
-    const auto fit = fingerpad::fit_linear_shear(samples, fingerpad::shear_without_measure(),
-                                                 {.robust = robust, .min_explained = 0.5});
-    return [map = fit.map](const Point2<double>& d) { return map.force_n(d); };
+    const auto fit =
+        fingerpad::fit_linear_shear(samples, 1, 0, {.robust = robust, .min_explained = 0.5});
+    return [shear = fingerpad::Shear<>(fit.map)](const Point2<double>& d) {
+      return shear(1, d, 0).tangential_force_n;
+    };
   };
 }
 

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "python/arrays.hpp"
-#include "python/look_up.hpp"
 #include "python/parts.hpp"
 
 namespace python {
@@ -80,9 +79,9 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const fingerpad::ContactTest& contact,
                                 const SpatialStickTest& stick,
                                 const WrenchOptions& wrench,
-                                const std::optional<NormalForce>& force_of_area,
-                                const std::optional<NormalForce>& force_of_depth,
-                                const std::optional<Shear>& shear,
+                                const std::optional<fingerpad::NormalForce<>>& force_of_area,
+                                const std::optional<fingerpad::NormalForce<>>& force_of_depth,
+                                const std::optional<fingerpad::Shear<>>& shear,
                                 bool shear_by_depth,
                                 const Count& smoothing_px,
                                 const Number& dot_radius_px) {

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "python/look_up.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "python/arrays.hpp"
 #include "python/parts.hpp"
 
@@ -18,11 +20,12 @@ namespace {
 using fingerpad::CurveOptions;
 using fingerpad::FitOptions;
 using fingerpad::Point2;
-using Curve = fingerpad::PolynomialForce<3>;
-using NormalFit = fingerpad::NormalForceFit<Curve>;
-using NormalResult = fingerpad::NormalForceResult<double>;
+using NormalForce = fingerpad::NormalForce<>;
+using NormalFit = fingerpad::NormalForceFit<>;
+using ForceResult = fingerpad::ForceResult<double>;
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::vector<Sample>;
+using Shear = fingerpad::Shear<>;
 using ShearResult = fingerpad::ShearResult<double>;
 
 /// A fit with the reference measure of its normalisation.
@@ -86,8 +89,10 @@ NormalFit fit_normal_force(const Array& measure,
     fill(samples, rotation_rad, "rotation_rad", 1,
          [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
   }
+  CurveOptions cubic_curve = curve;
+  cubic_curve.degree = 3;
   return without_lock(
-      [&] { return fingerpad::fit_normal_force<3, double>(samples, curve, options); });
+      [&] { return fingerpad::fit_normal_force<double>(samples, cubic_curve, options); });
 }
 
 ShearFit fit_tangential_force(const Array& measure,
@@ -105,7 +110,7 @@ ShearFit fit_tangential_force(const Array& measure,
   });
   const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_tangential_force<1, double>(samples, at, exponent, options), at};
+    return {fingerpad::fit_tangential_force<double>(samples, at, exponent, options), at};
   });
 }
 
@@ -121,25 +126,12 @@ ShearFit fit_moment(const Array& measure,
   fill(samples, moment_n_mm, "moment_n_mm", 1, [](Sample& s, Cell x, Cell) { s.moment_n_mm = *x; });
   const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_moment<1, double>(samples, at, exponent, options), at};
+    return {fingerpad::fit_moment<double>(samples, at, exponent, options), at};
   });
 }
 
-/// The curve of a fit in the type that Fingertip uses; the higher coefficients are 0.
 NormalForce normal_force_of(const NormalFit& fit) {
-  fingerpad::PolynomialForce<5> curve;
-  curve.from = fit.curve.from;
-  curve.to = fit.curve.to;
-  NormalForce::Errors errors;
-  errors.residual_sd_n = fit.errors.residual_sd_n;
-  errors.measure_sd = fit.errors.measure_sd;
-  for (std::size_t i = 0; i < Curve::parameters; ++i) {
-    curve.coefficients[i] = fit.curve.coefficients[i];
-    for (std::size_t j = 0; j < Curve::parameters; ++j) {
-      errors.covariance[i][j] = fit.errors.covariance[i][j];
-    }
-  }
-  return {curve, fit.compensation, errors};
+  return NormalForce(fit.curve);
 }
 
 Shear shear_of(const ShearFit& force, const ShearFit& moment) {
@@ -148,14 +140,15 @@ Shear shear_of(const ShearFit& force, const ShearFit& moment) {
                           std::to_string(force.reference) + " and " +
                           std::to_string(moment.reference));
   }
-  const auto widened = [](const auto& narrow) {
-    fingerpad::detail::OddPolynomial<4> wide;
-    wide.coefficients = {narrow.coefficients[0], 0, 0, 0};
-    wide.to = narrow.to;
-    return wide;
-  };
-  return {{force.reference, force.fit.exponent, moment.fit.exponent},
-          {widened(force.fit.polynomial), widened(moment.fit.polynomial)}};
+  return Shear({force.reference, force.fit.law, moment.fit.law});
+}
+
+/// The cubic's part of an array of a curve.
+template <class Row>
+auto cubic(const Row& all) {
+  std::array<typename Row::value_type, 4> some;
+  std::copy_n(all.begin(), some.size(), some.begin());
+  return some;
 }
 
 Point2<double> displacement_of(const Array& given) {
@@ -167,26 +160,16 @@ Point2<double> displacement_of(const Array& given) {
 }
 
 void bind_results(py::module_& module) {
-  py::class_<NormalResult>(module, "NormalForceResult", "A normal force; force/normal_force.hpp.")
-      .def_property_readonly("ok", &NormalResult::ok, "whether the calibration vouches for it")
-      .def_property_readonly("status", [](const NormalResult& r) { return name_of(r.status); })
-      .def_readonly("force_n", &NormalResult::force_n, "pressing force, N, >= 0")
-      .def_readonly("variance_n2", &NormalResult::variance_n2, "N^2");
-  py::class_<fingerpad::FusedForce<double>>(module, "FusedForce",
-                                            "Normal force from area and depth together.")
-      .def_property_readonly("ok", &fingerpad::FusedForce<double>::ok)
-      .def_property_readonly(
-          "status", [](const fingerpad::FusedForce<double>& r) { return name_of(r.status); })
-      .def_readonly("force_n", &fingerpad::FusedForce<double>::force_n)
-      .def_readonly("variance_n2", &fingerpad::FusedForce<double>::variance_n2)
-      .def_readonly("disagreement", &fingerpad::FusedForce<double>::disagreement,
-                    "difference of the two forces, in standard deviations");
-  py::class_<ShearResult>(module, "ShearResult", "Tangential force and moment; force/shear.hpp.")
+  py::class_<ForceResult>(module, "ForceResult", "A normal force; force/look_up.hpp.")
+      .def_property_readonly("ok", &ForceResult::ok, "whether the calibration vouches for it")
+      .def_property_readonly("status", [](const ForceResult& r) { return name_of(r.status); })
+      .def_readonly("force_n", &ForceResult::force_n, "pressing force, N, >= 0")
+      .def_readonly("variance_n2", &ForceResult::variance_n2, "N^2")
+      .def_readonly("disagreement", &ForceResult::disagreement,
+                    "difference of the forces by area and by depth, in standard deviations");
+  py::class_<ShearResult>(module, "ShearResult", "Tangential force and moment; force/look_up.hpp.")
       .def_property_readonly("ok", &ShearResult::ok)
-      .def_property_readonly("force_status",
-                             [](const ShearResult& r) { return name_of(r.force_status); })
-      .def_property_readonly("moment_status",
-                             [](const ShearResult& r) { return name_of(r.moment_status); })
+      .def_property_readonly("status", [](const ShearResult& r) { return name_of(r.status); })
       .def_property_readonly("tangential_force_n",
                              [](const ShearResult& r) { return as_tuple(r.tangential_force_n); })
       .def_readonly("moment_n_mm", &ShearResult::moment_n_mm);
@@ -197,7 +180,7 @@ void bind_normal_force_fit(py::module_& module) {
       .def_readwrite("robust", &FitOptions::robust)
       .def_readwrite("min_explained", &FitOptions::min_explained);
   bind_options<CurveOptions>(module, "CurveOptions",
-                             "What fit_normal_force fits; see calibrate/force.hpp.")
+                             "What fit_normal_force fits; see calibrate/look_up.hpp.")
       .def_readwrite("through_zero", &CurveOptions::through_zero)
       .def_readwrite("rising", &CurveOptions::rising)
       .def_readwrite("displaced", &CurveOptions::displaced)
@@ -206,10 +189,16 @@ void bind_normal_force_fit(py::module_& module) {
       .def_property_readonly("ok", &NormalFit::ok)
       .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
       .def_property_readonly(
-          "coefficients", [](const NormalFit& f) { return f.curve.coefficients; },
+          "coefficients", [](const NormalFit& f) { return cubic(f.curve.coefficients); },
           "c_0 to c_3 of c_0 + c_1 m + ..., N over the measure's unit to the k-th")
       .def_property_readonly(
-          "covariance", [](const NormalFit& f) { return f.errors.covariance; },
+          "covariance",
+          [](const NormalFit& f) {
+            std::array<std::array<double, 4>, 4> covariance;
+            std::transform(f.curve.covariance.begin(), f.curve.covariance.begin() + 4,
+                           covariance.begin(), [](const auto& row) { return cubic(row); });
+            return covariance;
+          },
           "4 x 4 covariance of the coefficients")
       .def_property_readonly(
           "range",
@@ -218,11 +207,9 @@ void bind_normal_force_fit(py::module_& module) {
           },
           "smallest and largest measure")
       .def_property_readonly("residual_sd_n",
-                             [](const NormalFit& f) { return f.errors.residual_sd_n; })
-      .def_property_readonly("per_mm_sq",
-                             [](const NormalFit& f) { return f.compensation.per_mm_sq; })
-      .def_property_readonly("per_rad_sq",
-                             [](const NormalFit& f) { return f.compensation.per_rad_sq; })
+                             [](const NormalFit& f) { return f.curve.residual_sd_n; })
+      .def_property_readonly("per_mm_sq", [](const NormalFit& f) { return f.curve.per_mm_sq; })
+      .def_property_readonly("per_rad_sq", [](const NormalFit& f) { return f.curve.per_rad_sq; })
       .def_readonly("explained", &NormalFit::explained, "explained share of the variance");
 }
 
@@ -231,14 +218,14 @@ void bind_shear_fit(py::module_& module) {
       .def_property_readonly("ok", [](const ShearFit& f) { return f.fit.ok(); })
       .def_property_readonly("status", [](const ShearFit& f) { return text_of(f.fit); })
       .def_property_readonly(
-          "stiffness", [](const ShearFit& f) { return f.fit.polynomial.coefficients[0]; },
+          "stiffness", [](const ShearFit& f) { return f.fit.law.coefficients[0]; },
           "N/mm, or N mm/rad")
       .def_property_readonly("stiffness_sd",
-                             [](const ShearFit& f) { return f.fit.standard_errors[0]; })
+                             [](const ShearFit& f) { return f.fit.coefficient_sd(0); })
       .def_property_readonly(
-          "to", [](const ShearFit& f) { return f.fit.polynomial.to; }, "mm, or rad")
-      .def_property_readonly("exponent", [](const ShearFit& f) { return f.fit.exponent; })
-      .def_property_readonly("exponent_sd", [](const ShearFit& f) { return f.fit.exponent_sd; })
+          "to", [](const ShearFit& f) { return f.fit.law.to; }, "mm, or rad")
+      .def_property_readonly("exponent", [](const ShearFit& f) { return f.fit.law.exponent; })
+      .def_property_readonly("exponent_sd", [](const ShearFit& f) { return f.fit.exponent_sd(); })
       .def_property_readonly("residual_sd", [](const ShearFit& f) { return f.fit.residual_sd; })
       .def_property_readonly("explained", [](const ShearFit& f) { return f.fit.explained; });
 }
@@ -248,7 +235,7 @@ void bind_fits(py::module_& module) {
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
       py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
       py::arg("curve") = CurveOptions(), py::arg("options") = FitOptions(),
-      "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/force.hpp.\n\n"
+      "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
       "displacement_mm: (n, 2), rotation_rad: (n,), for CurveOptions(displaced=True,\n"
       "rotated=True). NaN: not measured.");
@@ -272,7 +259,7 @@ void bind_look_up(py::module_& module) {
   bind_shear_fit(module);
   bind_fits(module);
   py::class_<NormalForce>(module, "NormalForce",
-                          "Normal force by one measure of the contact; force/normal_force.hpp.")
+                          "Normal force by one measure of the contact; force/look_up.hpp.")
       .def(py::init(&normal_force_of), py::arg("fit"))
       .def(
           "__call__",
@@ -285,7 +272,7 @@ void bind_look_up(py::module_& module) {
           py::arg("rotation_rad") = py::float_(0.0),
           "result = force(measure, displacement_mm, rotation_rad)\n\n"
           "measure: mm^2 or mm, as in the fit. displacement_mm: (x, y).");
-  py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/shear.hpp.")
+  py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/look_up.hpp.")
       .def(py::init(&shear_of), py::arg("force"), py::arg("moment"),
            "force, moment: results of fit_tangential_force and fit_moment with the same reference.")
       .def(

@@ -14,11 +14,10 @@
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
-#include "fingerpad/published/normal_force.hpp"
 #include "replay/io/failure.hpp"
 #include "trial_parts.hpp"
 
@@ -273,66 +272,27 @@ Samples contacts_with_outliers(Chance& chance) {
 
 Trial normal_force() {
   const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_normal_force<2>(std::span(samples));
+    const auto found = fingerpad::fit_normal_force(std::span(samples));
     return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
-                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
+                    block([&](auto i, auto j) { return found.curve.covariance[i][j]; }, {1, 2})};
   };
   return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
 }
 
 Trial robust_normal_force() {
   const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_normal_force<2>(std::span(samples), {}, robust);
+    const auto found = fingerpad::fit_normal_force(std::span(samples), {}, robust);
     return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
-                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {1, 2})};
+                    block([&](auto i, auto j) { return found.curve.covariance[i][j]; }, {1, 2})};
   };
   return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.3, contacts_with_outliers,
                draw_samples, fit);
 }
 
-/// The published compensation of a known curve by the contact's displacement.
-Trial affine_force() {
-  const fingerpad::PolynomialForce<2> curve{{0, 0.5, 0.3}, 0.1, 6};
-  const auto measure = [curve](Chance& chance) {
-    Samples samples = contacts(chance);
-    for (Sample& s : samples) {
-      s.normal_force_n = 0.9 * curve.force_n(s.measure) +
-                         0.4 * std::hypot(s.displacement_mm.x, s.displacement_mm.y) + 0.1 +
-                         force_noise_n * chance.normal();
-    }
-    return samples;
-  };
-  const auto fit = [curve](const Samples& samples) {
-    const auto found = fingerpad::published::fit_affine_force(
-        std::span(samples), curve, fingerpad::published::AffineBy::displacement);
-    return Estimate{{found.force.gain, found.force.per_unit, found.force.offset_n},
-                    block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1, 2})};
-  };
-  return trial({"gain", "n_per_mm", "offset_n"}, {0.9, 0.4, 0.1}, 0.1, measure, draw_samples, fit);
-}
-
 template <class Fit>
 Estimate of_shear(const Fit& found) {
-  return {{found.polynomial.coefficients[0], found.exponent},
-          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
-}
-
-/// Forty radii of an elastic pad, 0.05 mm of noise.
-Trial power_law() {
-  const auto measure = [](Chance& chance) {
-    Samples samples = contacts(chance);
-    for (Sample& s : samples) {
-      s.normal_force_n = chance.uniform(0.3, 10);
-      s.measure = 2.2 * std::pow(s.normal_force_n, 0.33) + 0.05 * chance.normal();
-    }
-    return samples;
-  };
-  const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_power_law(std::span(samples));
-    return Estimate{{found.curve.coefficient_mm, found.curve.exponent},
-                    block([&](auto i, auto j) { return found.errors.covariance[i][j]; }, {0, 1})};
-  };
-  return trial({"coefficient_mm", "exponent"}, {2.2, 0.33}, 0.1, measure, draw_samples, fit);
+  return {{found.law.coefficients[0], found.law.exponent},
+          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 4})};
 }
 
 Trial tangential_force() {
@@ -379,8 +339,7 @@ Trial linear_shear() {
     return samples;
   };
   const auto fit = [](const Samples& samples) {
-    const auto found =
-        fingerpad::fit_linear_shear(std::span(samples), fingerpad::shear_without_measure<double>());
+    const auto found = fingerpad::fit_linear_shear(std::span(samples));
     const auto& x = found.x_standard_errors;
     const auto& y = found.y_standard_errors;
     return Estimate{{found.map.x_by_x, found.map.x_by_y, found.map.y_by_x, found.map.y_by_y},
@@ -436,12 +395,10 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"cap", cap},
       {"intensity", intensity},
       {"preslip", preslip},
-      {"power_law", power_law},
       {"rim", rim},
       {"rubber", rubber},
       {"normal_force", normal_force},
       {"robust_normal_force", robust_normal_force},
-      {"affine_force", affine_force},
       {"tangential_force", tangential_force},
       {"robust_tangential_force", robust_tangential_force},
       {"moment", moment},

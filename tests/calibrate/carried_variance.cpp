@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "fingerpad/adapt/dual.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
+#include "support/curves.hpp"
 #include "support/pad.hpp"
 #include "support/slipping_patch.hpp"
 #include "support/wrench_frames.hpp"
@@ -72,10 +73,7 @@ std::vector<ForceSample<double>> dragged(double noise_n, test::Random& random) {
 
 template <class S>
 Point2<S> force_at(const S& gain, const S& exponent, double measure, const Point2<double>& d) {
-  RadialShear<1, S> map;
-  map.force.coefficients[0] = gain;
-  map.moment.coefficients[0] = S(30);
-  const Shear shear(ShearNormalisation<S>{S(reference_mm2), exponent, S(1.5)}, map);
+  const Shear shear(test::straight_map(S(reference_mm2), exponent, S(1.5), gain, S(30)));
   return shear(S(measure), {S(d.x), S(d.y)}, S(0)).tangential_force_n;
 }
 
@@ -186,17 +184,17 @@ TEST_CASE("variance of a force by look-up is what repeated calibrations scatter 
   const Point2<double> d = {0.5, -0.2};
   const double measure = GENERATE(60.0, 250.0);
   const auto fit_of = [](const std::vector<ForceSample<double>>& samples) {
-    return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), reference_mm2);
+    return fit_tangential_force(std::span<const ForceSample<double>>(samples), reference_mm2);
   };
   double variance = 0;
   double scatter = 0;
   const auto truth = force_at(2.0, 0.6, measure, d);
   for (int t = 0; t < trials; ++t) {
     const auto fit = fit_of(dragged(noise_n, random));
-    const auto p = seeded(std::array{fit.polynomial.coefficients[0], fit.exponent});
+    const auto p = seeded(std::array{fit.law.coefficients[0], fit.law.exponent});
     const auto force = force_at(p[0], p[1], measure, d);
-    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][1]},
-                                     {fit.covariance[1][0], fit.covariance[1][1]}};
+    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][4]},
+                                     {fit.covariance[4][0], fit.covariance[4][4]}};
     variance += carried_variance(force.x, covariance) / trials;
     scatter += square(force.x.value - truth.x) / trials;
   }

@@ -9,8 +9,8 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
-#include "fingerpad/calibrate/force.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/foam.hpp"
@@ -47,31 +47,27 @@ void try_forces(Input& in) {
   curve.rotated = in.flag();
   curve.through_zero = in.flag();
   curve.rising = in.flag();
-  switch (in.whole(0, 4)) {
+  curve.degree = static_cast<int>(in.whole(1, 5));
+  switch (in.whole(0, 3)) {
     case 0: {
-      const auto fit = fit_normal_force<2>(samples, curve, options);
+      const auto fit = fit_normal_force(samples, curve, options);
       require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a curve is finite");
       return;
     }
     case 1: {
-      const auto fit = fit_power_law(samples, options);
-      require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a power law is finite");
-      return;
-    }
-    case 2: {
-      const auto fit = fit_tangential_force<1>(samples, 100.0, {}, options);
+      const auto fit = fit_tangential_force(samples, 100.0, {}, options);
       require(!fit.ok() || fit.residuals.size() <= 2 * given.size(),
               "there is at most one residual for each component");
       return;
     }
-    case 3: {
-      const auto fit = fit_moment<1>(samples, 100.0, 1.7, options);
+    case 2: {
+      const auto fit = fit_moment(samples, 100.0, 1.7, options);
       require(!fit.ok() || fit.residuals.size() <= given.size(),
               "there is at most one residual for each sample");
       return;
     }
     default: {
-      const auto fit = fit_linear_shear(samples, ShearNormalisation<>{100, 0.65, 1.7}, options);
+      const auto fit = fit_linear_shear(samples, 100, 0.65, options);
       require(!fit.ok() || (is_finite(fit.map.x_by_x) && is_finite(fit.map.offset_n)),
               "a map is finite");
     }

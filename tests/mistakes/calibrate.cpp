@@ -16,7 +16,7 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "support/catch.hpp"
@@ -90,7 +90,7 @@ std::function<std::string()> normal(const Change& change) {
   return [=] {
     const Forces samples = changed(change);
     return said([&] {
-      return fit_normal_force<2>(std::span<const ForceSample<double>>(samples), {.rotated = true});
+      return fit_normal_force(std::span<const ForceSample<double>>(samples), {.rotated = true});
     });
   };
 }
@@ -98,13 +98,13 @@ std::function<std::string()> tangential(const Change& change) {
   return [=] {
     const Forces samples = changed(change);
     return said(
-        [&] { return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), 2); });
+        [&] { return fit_tangential_force(std::span<const ForceSample<double>>(samples), 2); });
   };
 }
 std::function<std::string()> moment(const Change& change) {
   return [=] {
     const Forces samples = changed(change);
-    return said([&] { return fit_moment<1>(std::span<const ForceSample<double>>(samples), 2); });
+    return said([&] { return fit_moment(std::span<const ForceSample<double>>(samples), 2); });
   };
 }
 
@@ -269,8 +269,8 @@ TEST_CASE("mistakes: by how much a gauge is turned", "[mistakes]") {
       s.tangential_force_n.y += 0.1 * random.normal();
       rotate(s.tangential_force_n, turned_rad);
     }
-    return fit_tangential_force<1>(std::span<const ForceSample<double>>(samples), 2, 0.7,
-                                   {.min_explained = 0.1});
+    return fit_tangential_force(std::span<const ForceSample<double>>(samples), 2, 0.7,
+                                {.min_explained = 0.1});
   };
   const auto as_it_is = [](auto&) {};
   // the standard error holds at any angle

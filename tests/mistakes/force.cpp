@@ -12,15 +12,14 @@
 #include <vector>
 
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
-#include "fingerpad/published/normal_force.hpp"
-#include "fingerpad/published/shear.hpp"
+#include "fingerpad/published/look_up.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "support/catch.hpp"
+#include "support/curves.hpp"
 #include "support/pressed_pad.hpp"
 #include "support/refusal.hpp"
 #include "support/traction_scenes.hpp"
@@ -378,11 +377,17 @@ const std::vector<LookUpMistake> look_up_mistakes = {
 }  // namespace
 
 TEST_CASE("mistakes with the look-ups", "[mistakes]") {
-  const CurveErrors<3> errors{.residual_sd_n = 0.3};
-  const ScaledCompensation<> moved{0.02, 0.5};
-  const NormalForce area(published::force_of_area(), moved, errors);
-  const NormalForce depth(published::force_of_depth(), moved, errors);
-  const Shear shear(published::shear_normalisation_by_area(), RadialShear<>{{{2}, 8}, {{60}, 1}});
+  ForceCurve<> by_area_curve = test::curve_of_area(), by_depth_curve = test::curve_of_depth();
+  for (ForceCurve<>* curve : {&by_area_curve, &by_depth_curve}) {
+    curve->residual_sd_n = 0.3;
+    curve->per_mm_sq = 0.02;
+    curve->per_rad_sq = 0.5;
+  }
+  const NormalForce area(by_area_curve), depth(by_depth_curve);
+  ShearMap<> map = test::map_of(published::shear_by_area(2.0, 60.0));
+  map.force.to = 8;
+  map.moment.to = 1;
+  const Shear shear(map);
   for (const LookUpMistake& m : look_up_mistakes) {
     INFO(m.mistake);
     Contact c;
@@ -394,7 +399,7 @@ TEST_CASE("mistakes with the look-ups", "[mistakes]") {
     CHECK(name_of(by_area.status) == m.said_by_area);
     CHECK(name_of(by_depth.status) == m.said_by_depth);
     CHECK(name_of(both.status) == m.fused);
-    CHECK(name_of(aside.status()) == m.shear);
+    CHECK(name_of(aside.status) == m.shear);
     CHECK(both.ok() == (m.fused == "measured"));
   }
 }
@@ -402,8 +407,8 @@ TEST_CASE("mistakes with the look-ups", "[mistakes]") {
 TEST_CASE("mistakes with the look-ups: the variance belongs to the curve that answers",
           "[mistakes]") {
   // 28.2 N if a quadratic up to 20 N continues, 25.4 N along its tangent
-  const PolynomialForce<> curve{{0, 0.02, 0.0001}, 20, 350};
-  const NormalForce<> force(curve, {}, {.residual_sd_n = 0.08});
+  const ForceCurve<> curve{{0, 0.02, 0.0001}, 20, 350, 0, 0, 0.08};
+  const NormalForce force(curve);
   const auto r = force(450);
   const double tangent = curve.force_n(350) + 100 * curve.slope(350);
   CHECK(r.force_n == Approx(tangent));
@@ -413,11 +418,10 @@ TEST_CASE("mistakes with the look-ups: the variance belongs to the curve that an
 
 TEST_CASE("mistakes with the look-ups: moments in N m", "[mistakes]") {
   const auto with = [](double force, double moment) {
-    return test::refusal([&] {
-      Shear<>(published::shear_normalisation_by_area(), {{{force}}, {{moment}}});
-    });
+    return test::refusal(
+        [&] { (void)Shear(test::map_of(published::shear_by_area(force, moment))); });
   };
-  const std::string said = "RadialShear: size of the contact from moment over force, mm = ";
+  const std::string said = "ShearMap: size of the contact from moment over force";
   CHECK(with(2, 60) == "accepted");
   CHECK(test::begins_with(with(2, 60e-3), said));  // N m
   CHECK(test::begins_with(with(2, 60e6), said));   // uN m
@@ -661,7 +665,7 @@ TEST_CASE("one convention of signs: a press", "[mistakes]") {
   CHECK(on_pad.z < 0);
   const auto load = contact_load(on_pad, {0, 0, 0}, scene.dots, scene.contact);
   CHECK(load.normal_n == Approx(-on_pad.z).epsilon(0.01));
-  CHECK(NormalForce(published::force_of_area())(225.0).force_n > 0);
+  CHECK(NormalForce(test::curve_of_area())(225.0).force_n > 0);
   // the other sign is reported where a normal force is passed
   FrictionLimit<> limit;
   ContactLoad<> pulls = load;

@@ -314,7 +314,7 @@ TEST_CASE("what the options lack has no answer, and the rest is the same", "[cha
   const FingertipResult& expected = whole.results[0];
   CHECK(touch.ok());
   CHECK(touch.contact.contact_px == expected.contact.contact_px);
-  CHECK(touch.normal.sources == 1);
+  CHECK(touch.normal.has_force());
   CHECK(test::same_bits(touch.normal.force_n, expected.by_area.force_n));
   CHECK_FALSE(touch.shear.has_force());
   CHECK_FALSE(touch.wrench.ok());
@@ -328,9 +328,10 @@ TEST_CASE("what the options lack has no answer, and the rest is the same", "[cha
 TEST_CASE("an unknown shift counts as none", "[chain]") {
   auto options = frames().options();
   options.free_dots_mm = {};
-  using LookUp = typename decltype(options)::NormalLookUp;
-  options.force_of_depth =
-      LookUp(options.force_of_depth->curve(), fingerpad::ScaledCompensation<>{0.02, 0.5});
+  auto curve = options.force_of_depth->curve();
+  curve.per_mm_sq = 0.02;
+  curve.per_rad_sq = 0.5;
+  options.force_of_depth.emplace(curve);
   TipOf<fingerpad::FingertipMethods> tip(options);
   const FingertipResult touch = touch_of(tip, frames()[0].view());
   const auto unmoved = (*options.force_of_depth)(touch.contact.depth_mm, {0, 0}, 0.0);

@@ -9,7 +9,6 @@
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/neighbour_light.hpp"
-#include "fingerpad/published/normal_force_first_forms.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -236,32 +235,4 @@ TEST_CASE("published contact region: radius and pitch at the ends of their range
   CHECK_FALSE(accepts(1001, 0.1));
   CHECK_FALSE(accepts(2, 0));
   CHECK_FALSE(accepts(2, 10.1));
-}
-
-TEST_CASE("published flat contact: F = p S", "[published]") {
-  CHECK(published::flat_contact_force_n(0.02, 300.0) == Approx(6.0));
-  CHECK(published::flat_contact_force_n(0.0, 300.0) == 0);
-  CHECK(published::flat_contact_force_n(0.02, 0.5) == Approx(0.01));  // also for a small contact
-  CHECK(std::isnan(published::flat_contact_force_n(0.02, -0.5)));
-  CHECK(std::isnan(published::flat_contact_force_n(-0.02, 300.0)));
-  CHECK(std::isnan(published::flat_contact_force_n(0.02, test::nan)));
-}
-
-TEST_CASE("published eqs. 19 and 20: as printed, and falling with depth", "[published]") {
-  constexpr double degree = std::numbers::pi / 180;
-  const auto area = published::first_compensation_by_area();
-  const auto depth = published::first_compensation_by_depth();
-  CHECK(area.displaced(10, 3) == Approx(0.748 * 10 - 0.637 * 3 + 1.7));
-  CHECK(depth.displaced(10, 3) == Approx(-0.356 * 10 + 0.548 * 3 + 0.2));
-  CHECK(area.rotated(10, 20 * degree) == Approx(1.2 * 10 + 0.00171 * 20 - 1.0));
-  CHECK(depth.rotated(10, 20 * degree) == Approx(-0.272 * 10 - 0.0074 * 20 + 0.5));
-  // E029: the error that eqs. 21 and 22 correct
-  CHECK(depth.displaced(20, 3) < depth.displaced(10, 3));
-  const auto later = published::compensation_by_depth();
-  CHECK(later.displaced(20, 3) > later.displaced(10, 3));
-  // their limits
-  const NormalForce<PolynomialForce<2>, published::Compensation<double>> force(
-      published::force_of_area(), area);
-  const double plain = force(300).force_n;
-  CHECK(force(300, {3, 0}).force_n == Approx(0.748 * plain - 0.637 * 3 + 1.7));
 }

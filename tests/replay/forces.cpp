@@ -516,8 +516,8 @@ TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look
        "force.by_depth.coefficients is [0,1,2,3,4,5,6] (an array), must be 1 to 6 numbers");
   says(changed(by_depth_alone, "[0, 1, 0.5]", "[0, \"1\"]"), "force.by_depth.coefficients is [0,");
   says(changed(by_depth_alone, "[0, 1, 0.5]", "[0, 1, -0.5]"),
-       "force.by_depth: PolynomialForce: slope within the range = -");
-  says(changed(by_depth_alone, "3.5", "0.1"), "force.by_depth: PolynomialForce: to = 0.1, must be");
+       "force.by_depth: ForceCurve: slope within the range = -");
+  says(changed(by_depth_alone, "3.5", "0.1"), "force.by_depth: ForceCurve: to = 0.1, must be");
   says(changed(by_depth_alone, "3.5", "3.5, \"residual_n\": 0"),
        "force.by_depth.residual_n = 0, must be > 0");
   const std::string both =
@@ -529,8 +529,8 @@ TEST_CASE("replay: curves that cannot be are refused with what is wrong", "[look
   says(changed(shear_alone, "\"area\"", "7"), "force.shear.by is 7 (a number), must be");
   says(changed(shear_alone, "\"to_mm\": 9,", ""), "force.shear.to_mm is missing (the largest");
   says(changed(shear_alone, "\"reference\": 50", "\"reference\": 0"),
-       "force.shear: ShearNormalisation: reference = 0, must be finite and > 0");
-  says(changed(shear_alone, "[2]", "[-2]"), "force.shear: RadialShear: force: first of the");
+       "force.shear: ShearMap: reference = 0, must be finite and > 0");
+  says(changed(shear_alone, "[2]", "[-2]"), "force.shear: ShearMap: force: c_1 = -2, must be");
   says(changed(shear_alone, "[300, 10]", "[1, 2, 3, 4, 5]"),
        "force.shear.moment_n_mm_per_rad is [1,2,3,4,5] (an array), must be 1 to 4 numbers");
   // curves alone do not give a recording of dots a depth

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "support/finite_elements.hpp"
 

@@ -24,11 +24,10 @@
 #include <vector>
 
 #include "bench/support/scene_frames.hpp"
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/contact/surface.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "membranes.hpp"
@@ -115,9 +114,10 @@ inline auto normal_force_of(ContactMeasure measure, bool compensates) {
   using namespace fingerpad;
   return [=](const std::string& scene) {
     const auto samples = load_samples(other_plates(scene), measure);
-    const auto fit = fit_normal_force<3>(std::span<const LoadSample>(samples),
-                                         {.displaced = compensates, .rotated = compensates});
-    return [force = NormalForce(fit.curve, fit.compensation)](const LoadSample& s) {
+    const auto fit =
+        fit_normal_force(std::span<const LoadSample>(samples),
+                         {.degree = 3, .displaced = compensates, .rotated = compensates});
+    return [force = NormalForce(fit.curve)](const LoadSample& s) {
       return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
     };
   };
@@ -136,12 +136,11 @@ inline auto tangential_force_of(ContactMeasure measure, ContactDotsOf dots, bool
   return [=](const std::string& scene) {
     const double reference = measure == ContactMeasure::depth ? 10 : 100;
     const auto samples = load_samples(shear_calibration(scene), measure, dots);
-    const auto fit = fit_tangential_force<1>(std::span<const LoadSample>(samples), reference,
-                                             divides ? std::optional<double>() : 0.0);
-    RadialShear<1> map;
-    map.force = fit.polynomial;
-    map.moment.coefficients = {100};
-    return [shear = Shear<RadialShear<1>>({reference, fit.exponent, 0}, map)](const LoadSample& s) {
+    const auto fit = fit_tangential_force(std::span<const LoadSample>(samples), reference,
+                                          divides ? std::optional<double>() : 0.0);
+    ShearMap<> map{reference, fit.law, {}};
+    map.moment.coefficients[0] = 100;
+    return [shear = Shear(map)](const LoadSample& s) {
       const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
       return std::hypot(f.x - s.tangential_force_n.x, f.y - s.tangential_force_n.y);
     };
@@ -162,8 +161,8 @@ inline std::vector<Effect> look_up_effects() {
     add({.name = "compensation",
          .quantity = "normal force " + by,
          .unit = "N",
-         .on = "`NormalForce` with `ScaledCompensation`",
-         .off = "with `NoCompensation`"},
+         .on = "with `per_mm_sq` and `per_rad_sq`",
+         .off = "without them"},
         measure, edge, edge, normal_force_of(measure, true), normal_force_of(measure, false));
   }
   for (const auto measure : {ContactMeasure::area, ContactMeasure::depth}) {

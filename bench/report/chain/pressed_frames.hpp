@@ -105,9 +105,8 @@ class PressedFrames {
     f.smoothing_px = (std::min)(2 * static_cast<int>(14 * scale) + 1, 109);
     f.contact.ring.radius_px = 25 * scale;
     // by area: the plate's pressure on it; by depth: a line between two of the frames
-    using NormalLookUp = fingerpad::FingertipOptions::NormalLookUp;
-    const typename NormalLookUp::Errors errors{.residual_sd_n = 0.1};
-    f.force_of_area = NormalLookUp({{0, pressure_mpa}, 50, 400}, {}, errors);
+    constexpr double residual_n = 0.1;
+    f.force_of_area.emplace(fingerpad::ForceCurve<>{{0, pressure_mpa}, 50, 400, 0, 0, residual_n});
     const auto of_depth = [&](double contact_mm) {
       test::RoundPad<test::FilmSide> pad;
       pad.contact_mm = contact_mm;
@@ -117,12 +116,9 @@ class PressedFrames {
     const auto [less_mm, less_n] = of_depth(7.6);
     const auto [more_mm, more_n] = of_depth(8.4);
     const double slope = (more_n - less_n) / (more_mm - less_mm);
-    f.force_of_depth =
-        NormalLookUp({{less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5}, {}, errors);
-    fingerpad::RadialShear<4> map;
-    map.force = {{1}, 10};
-    map.moment = {{1}, 1};
-    f.shear.emplace(fingerpad::ShearNormalisation<>{100, 0.65, 1.7}, map);
+    f.force_of_depth.emplace(fingerpad::ForceCurve<>{
+        {less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5, 0, 0, residual_n});
+    f.shear.emplace(fingerpad::ShearMap<>{100, {{1, 0, 0, 0}, 0.65, 10}, {{1, 0, 0, 0}, 1.7, 1}});
     return f;
   }
 

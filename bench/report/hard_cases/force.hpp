@@ -10,12 +10,12 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
-#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/published/look_up.hpp"
 #include "row.hpp"
+#include "support/curves.hpp"
 #include "support/pressed_pad.hpp"
 
 namespace hard {
@@ -42,17 +42,14 @@ inline Row no_area() {
 inline Row below_range() {
   return row("force by look-up",
              "eq. 21 by depth, shallow contacts moved by 1 mm; how far below 0, N",
-             "faded out below the range, then held at 0 with a status", []<class S>(S) {
+             "the default: faded out below the range, held at 0 with a status", []<class S>(S) {
                Forms f;
-               const auto curve = fingerpad::published::force_of_depth<S>();
-               const auto compensation = fingerpad::published::compensation_by_depth<S>();
-               const fingerpad::NormalForce force(curve, compensation);
+               const auto printed = fingerpad::published::normal_force_by_depth<S>();
+               const fingerpad::NormalForce force(test::curve_of_depth<S>());
                for (const double depth : {-0.5, 0.0, 0.01, 0.1, 0.3, 0.63, 0.9, 1.2}) {
                  const S d = S(depth);
-                 const auto& by = compensation.displaced;
-                 const S printed = by.gain * curve.force_n(d) + by.per_unit + by.offset_n;
                  const S held = force(d, {S(1), S(0)}).force_n;
-                 f.naive.add_absolute((std::min)(printed, S(0)), Digits50(0));
+                 f.naive.add_absolute((std::min)(printed(d, {S(1), S(0)}), S(0)), Digits50(0));
                  f.stable.add_absolute((std::min)(held, S(0)), Digits50(0));
                }
                return f;

@@ -6,6 +6,7 @@
 // tested on the same drag or twist, as in the paper; for shear, the central dot and straight lines
 // with the published exponents. Default: cubics through 0, and shear from the edge dots with fitted
 // exponents, each tested on a scene that was not fitted.
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,10 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/calibrate/force.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
-#include "fingerpad/published/normal_force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "support/contact_records.hpp"
 #include "table.hpp"
 
@@ -43,7 +42,7 @@ inline std::vector<double> published_normal(const std::string& scene,
                                             test::ContactMeasure measure) {
   using namespace fingerpad;
   const Samples press = samples_of({"press"}, measure, test::ContactDotsOf::center);
-  const auto curve = fit_normal_force<2>(span_of(press), {.through_zero = false}).curve;
+  const auto curve = fit_normal_force(span_of(press), {.through_zero = false}).curve;
   const Samples on = samples_of({scene}, measure, test::ContactDotsOf::center);
   std::vector<double> errors;
   if (scene == "press") {
@@ -52,14 +51,19 @@ inline std::vector<double> published_normal(const std::string& scene,
     }
     return errors;
   }
-  const bool turns = scene == "twist";
-  const auto fit =
-      fit_affine_force(span_of(on), curve,
-                       turns ? published::AffineBy::rotation : published::AffineBy::displacement);
-  for (const auto& s : on) {
-    const double size =
-        turns ? std::abs(s.rotation_rad) : std::hypot(s.displacement_mm.x, s.displacement_mm.y);
-    errors.push_back(fit.force(curve.force_n(s.measure), size) - s.normal_force_n);
+  const auto count = static_cast<Eigen::Index>(on.size());
+  Eigen::MatrixX3d terms(count, 3);
+  Eigen::VectorXd forces(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto& s = on[static_cast<std::size_t>(k)];
+    const double size = scene == "twist" ? std::abs(s.rotation_rad)
+                                         : std::hypot(s.displacement_mm.x, s.displacement_mm.y);
+    terms.row(k) << curve.force_n(s.measure), size, 1;
+    forces(k) = s.normal_force_n;
+  }
+  const Eigen::VectorXd fitted = terms * terms.colPivHouseholderQr().solve(forces);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    errors.push_back(fitted(k) - forces(k));
   }
   return errors;
 }
@@ -74,10 +78,10 @@ inline std::vector<std::string> plates_but(const std::string& scene) {
 inline std::vector<double> default_normal(const std::string& scene, test::ContactMeasure measure) {
   using namespace fingerpad;
   const Samples others = samples_of(plates_but(scene), measure);
-  const auto curve = fit_normal_force<3>(span_of(others)).curve;
+  const auto curve = fit_normal_force(span_of(others), {.degree = 3}).curve;
   std::vector<double> errors;
   for (const auto& s : samples_of({scene}, measure)) {
-    errors.push_back(NormalForce<PolynomialForce<3>>(curve)(s.measure).force_n - s.normal_force_n);
+    errors.push_back(NormalForce(curve)(s.measure).force_n - s.normal_force_n);
   }
   return errors;
 }
@@ -94,11 +98,10 @@ inline ShearErrors tangential(const std::vector<std::string>& from,
                               std::optional<double> exponent) {
   using namespace fingerpad;
   const Samples seen = samples_of(from, measure, dots);
-  const auto fit = fit_tangential_force<1>(span_of(seen), reference_of(measure), exponent);
-  RadialShear<1> map;
-  map.force = fit.polynomial;
-  map.moment.coefficients = {100};
-  const Shear<RadialShear<1>> shear({reference_of(measure), fit.exponent, 0}, map);
+  const auto fit = fit_tangential_force(span_of(seen), reference_of(measure), exponent);
+  ShearMap<> map{reference_of(measure), fit.law, {}};
+  map.moment.coefficients[0] = 0;
+  const Shear shear(map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
     const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
@@ -115,11 +118,10 @@ inline ShearErrors moment(const std::vector<std::string>& from,
                           std::optional<double> exponent) {
   using namespace fingerpad;
   const Samples seen = samples_of(from, measure, dots);
-  const auto fit = fit_moment<1>(span_of(seen), reference_of(measure), exponent);
-  RadialShear<1> map;
-  map.moment = fit.polynomial;
-  map.force.coefficients = {1};
-  const Shear<RadialShear<1>> shear({reference_of(measure), 0, fit.exponent}, map);
+  const auto fit = fit_moment(span_of(seen), reference_of(measure), exponent);
+  ShearMap<> map{reference_of(measure), {}, fit.law};
+  map.force.coefficients[0] = 0;
+  const Shear shear(map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
     out.errors.push_back(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm);

@@ -3,7 +3,7 @@
 // Checks whether the force gauge is rotated against the image: the dots move along with the force.
 #include <cmath>
 
-#include "fingerpad/calibrate/force.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "replay/check/parts.hpp"
 #include "replay/dots/dots.hpp"
 
@@ -70,8 +70,8 @@ void check_gauge(const std::filesystem::path& folder, Recording& recording, Find
     return;
   }
   try {
-    const auto fit = fingerpad::fit_tangential_force<1>(std::span<const Sample>(drags), 1, 0.0,
-                                                        {.min_explained = 0});
+    const auto fit = fingerpad::fit_tangential_force(std::span<const Sample>(drags), 1, 0.0,
+                                                     {.min_explained = 0});
     constexpr double degrees = 180 / CV_PI;
     const double angle = degrees * fit.gauge_angle_rad, sd = degrees * fit.gauge_angle_sd_rad;
     constexpr double most = 6;  // the response of a pad is not quite linear

@@ -110,10 +110,10 @@ void check_look_up(const Recording& recording, Findings& findings) {
     }
   };
   if (force.by_area) {
-    outside("by_area.to_mm2", force.by_area->curve.to, 1e-3 * base_mm2, base_mm2, "mm^2");
+    outside("by_area.to_mm2", force.by_area->to, 1e-3 * base_mm2, base_mm2, "mm^2");
   }
   if (force.by_depth) {
-    outside("by_depth.to_mm", force.by_depth->curve.to, 0.01 * pad.apex_height_mm,
+    outside("by_depth.to_mm", force.by_depth->to, 0.01 * pad.apex_height_mm,
             pad.apex_height_mm, "mm");
   }
   if (force.shear) {

@@ -151,10 +151,10 @@ Rim read_rim(const Section& root) {
 }
 
 /// `unit` is the unit of the measure in the keys: mm2 or mm.
-NormalForceLookUp read_normal_force(const Section& force,
-                                    const std::string& key,
-                                    const std::string& unit,
-                                    bool needs_residual) {
+fingerpad::ForceCurve<> read_normal_force(const Section& force,
+                                          const std::string& key,
+                                          const std::string& unit,
+                                          bool needs_residual) {
   const Section section = force.section(
       key, {{"coefficients", "normal force in N, a polynomial in the measure, constant term first"},
             {"from_" + unit, "the smallest contact of the calibration"},
@@ -164,26 +164,23 @@ NormalForceLookUp read_normal_force(const Section& force,
             {"covariance", "covariance of the coefficients, one row for each"},
             {"per_mm_sq", "relative change of the force per squared mm of shift"},
             {"per_rad_sq", "relative change of the force per squared rad of rotation"}});
-  NormalForceLookUp look_up;
-  look_up.curve.coefficients =
-      section.numbers<NormalForceLookUp::Curve::parameters>("coefficients");
-  look_up.curve.from = section.number("from_" + unit);
-  look_up.curve.to = section.number("to_" + unit);
+  fingerpad::ForceCurve<> curve;
+  curve.coefficients = section.numbers<fingerpad::ForceCurve<>::size>("coefficients");
+  curve.from = section.number("from_" + unit);
+  curve.to = section.number("to_" + unit);
   if (needs_residual || section.has("residual_n") || section.has("covariance")) {
-    look_up.errors.residual_sd_n = section.positive("residual_n");
+    curve.residual_sd_n = section.positive("residual_n");
   }
   if (section.has("covariance")) {
     const auto rows = section.square("covariance", section.at("coefficients").size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      std::copy(rows[k].begin(), rows[k].end(), look_up.errors.covariance[k].begin());
+      std::copy(rows[k].begin(), rows[k].end(), curve.covariance[k].begin());
     }
   }
-  look_up.compensation.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
-  look_up.compensation.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
-  section.check([&] { expects_valid(look_up.curve); });
-  section.check([&] { expects_valid(look_up.compensation); });
-  section.check([&] { expects_valid(look_up.errors); });
-  return look_up;
+  curve.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
+  curve.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
+  section.check([&] { fingerpad::require(curve); });
+  return curve;
 }
 
 ShearLookUp read_shear(const Section& force) {
@@ -196,19 +193,18 @@ ShearLookUp read_shear(const Section& force) {
                 {"moment_n_mm_per_rad", "odd polynomial in the rotation, linear coefficient first"},
                 {"to_mm", "the largest scaled displacement of the calibration, mm"},
                 {"to_rad", "the largest scaled rotation of the calibration, rad"}});
-  constexpr std::size_t most = ShearLookUp::Map().force.size;
+  constexpr std::size_t most = 4;
   ShearLookUp look_up;
   look_up.by = section.one_of("by", {"area", "depth"}) == "area" ? ContactMeasure::area
                                                                  : ContactMeasure::depth;
-  look_up.normalisation.reference = section.number("reference");
-  look_up.normalisation.displacement_exponent = section.number("displacement_exponent");
-  look_up.normalisation.rotation_exponent = section.number("rotation_exponent");
+  look_up.map.reference = section.number("reference");
+  look_up.map.force.exponent = section.number("displacement_exponent");
+  look_up.map.moment.exponent = section.number("rotation_exponent");
   look_up.map.force.coefficients = section.numbers<most>("force_n_per_mm");
   look_up.map.force.to = section.number("to_mm");
   look_up.map.moment.coefficients = section.numbers<most>("moment_n_mm_per_rad");
   look_up.map.moment.to = section.number("to_rad");
-  section.check([&] { expects_valid(look_up.normalisation); });
-  section.check([&] { expects_valid(look_up.map); });
+  section.check([&] { fingerpad::require(look_up.map); });
   return look_up;
 }
 

@@ -10,8 +10,7 @@
 #include <string>
 
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/force/normal_force.hpp"
-#include "fingerpad/force/shear.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
@@ -47,26 +46,16 @@ struct Rim {
 /// The measure of a contact by which a force is looked up.
 enum class ContactMeasure { area, depth };
 
-/// Normal force by area or depth.
-struct NormalForceLookUp {
-  using Curve = fingerpad::PolynomialForce<5>;  ///< coefficients not given are 0
-  Curve curve;
-  fingerpad::ScaledCompensation<> compensation;
-  fingerpad::CurveErrors<Curve::parameters> errors;
-};
-
 /// Tangential force and moment.
 struct ShearLookUp {
-  using Map = fingerpad::RadialShear<4>;
   ContactMeasure by = ContactMeasure::area;
-  fingerpad::ShearNormalisation<> normalisation;
-  Map map;
+  fingerpad::ShearMap<> map;
 };
 
 /// Curves of forces by look-up from an earlier calibration; at least one is set.
 struct ForceLookUp {
-  std::optional<NormalForceLookUp> by_area;  ///< mm^2
-  std::optional<NormalForceLookUp> by_depth;
+  std::optional<fingerpad::ForceCurve<>> by_area;  ///< mm^2
+  std::optional<fingerpad::ForceCurve<>> by_depth;
   std::optional<ShearLookUp> shear;
 };
 

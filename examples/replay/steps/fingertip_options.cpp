@@ -46,17 +46,14 @@ fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
 }
 
 void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
-  const auto normal = [](const NormalForceLookUp& by) {
-    return FingertipOptions::NormalLookUp(by.curve, by.compensation, by.errors);
-  };
   if (given.by_area) {
-    options.force_of_area = normal(*given.by_area);
+    options.force_of_area.emplace(*given.by_area);
   }
   if (given.by_depth) {
-    options.force_of_depth = normal(*given.by_depth);
+    options.force_of_depth.emplace(*given.by_depth);
   }
   if (given.shear) {
-    options.shear.emplace(given.shear->normalisation, given.shear->map);
+    options.shear.emplace(given.shear->map);
     options.shear_by_depth = given.shear->by == ContactMeasure::depth;
   }
 }

@@ -176,8 +176,8 @@ class Step : public FingertipStep {
     force.normal_n = touch.normal.force_n;
     force.normal_sd_n = std::sqrt(touch.normal.variance_n2);
     force.disagreement = touch.normal.disagreement;
-    for (const ForceStatus status : {touch.by_area.status, touch.by_depth.status,
-                                     touch.shear.force_status, touch.shear.moment_status}) {
+    for (const ForceStatus status :
+         {touch.by_area.status, touch.by_depth.status, touch.shear.status}) {
       force.beyond_range = force.beyond_range || status == ForceStatus::beyond_range;
     }
     force.tangential_n = touch.shear.tangential_force_n;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The area of the flat contact that would press as hard as the object. With it a look-up of force
-// (force/normal_force.hpp) holds for objects of any shape.
+// (force/look_up.hpp) holds for objects of any shape.
 //
 // Cut the membrane along a closed curve around the contact. Three things act on the piece inside:
 // the fluid's pressure p over the plan area A, the object's force, and along the curve the tension

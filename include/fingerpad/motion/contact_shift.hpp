@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Displacement of a contact, and its rotation about the normal, from the dots: the input of
-// force/shear.hpp and of the compensations of force/normal_force.hpp. Source: Ito, Kim and Obinata,
+// force/look_up.hpp. Source: Ito, Kim and Obinata,
 // "Acquisition of Contact Force and Slippage ...", figure 5, which takes the displacement of the
 // central dot. That dot stays with the object while the contact slips from its edge inward, so it
 // shows how far the object moved rather than the force. The whole force passes through the membrane

@@ -15,9 +15,8 @@
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/depth/sampling.hpp"
-#include "fingerpad/force/normal_force.hpp"
+#include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/shear.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
@@ -101,15 +100,13 @@ struct FingertipOptions {
   SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
   FrictionLimitOptions friction = {};
 
-  using NormalLookUp = NormalForce<PolynomialForce<5>, ScaledCompensation<>>;
-  using ShearLookUp = Shear<RadialShear<4>>;
   FlatAreaOptions flat_area = {};
   /// Force by contact area in mm^2, with errors; empty: not used.
-  std::optional<NormalLookUp> force_of_area = {};
+  std::optional<NormalForce<>> force_of_area = {};
   /// Force by depth in mm, with errors; empty: not used.
-  std::optional<NormalLookUp> force_of_depth = {};
-  std::optional<ShearLookUp> shear = {};  ///< empty: not used
-  bool shear_by_depth = false;            ///< looks up shear by mm of depth instead of mm^2 of area
+  std::optional<NormalForce<>> force_of_depth = {};
+  std::optional<Shear<>> shear = {};  ///< empty: not used
+  bool shear_by_depth = false;        ///< looks up shear by mm of depth instead of mm^2 of area
 
   /// Positions at which the side dots are fixed; one row; empty: no six-axis force.
   StridedView<const Point3<double>> rim_mm = {};
@@ -158,10 +155,10 @@ struct [[nodiscard]] FingertipResult {
   SlipResult<double> slip;           ///< from dots and friction; the input of GripControl
   ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
   FlatAreaResult<double> flat_area;  ///< of the plate that would press as hard
-  NormalForceResult<double> by_area, by_depth;  ///< from the curves
+  ForceResult<double> by_area, by_depth;  ///< from the curves
   /// Both combined; from the flat area alone if that is known, because the curve by depth holds for
   /// one shape only.
-  FusedForce<double> normal;
+  ForceResult<double> normal;
   ShearResult<double> shear;    ///< from the curve
   WrenchResult<double> wrench;  ///< six axes
 

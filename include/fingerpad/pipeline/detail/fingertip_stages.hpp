@@ -277,8 +277,8 @@ struct FingertipFlatArea {
 template <bool by_flat_area>
 struct FingertipLookUp {
   std::optional<ContactShift<>> shift;  // empty without dots
-  std::optional<FingertipOptions::NormalLookUp> of_area, of_depth;
-  std::optional<FingertipOptions::ShearLookUp> of_shift;
+  std::optional<NormalForce<>> of_area, of_depth;
+  std::optional<Shear<>> of_shift;
   bool shear_by_depth;
 
   explicit FingertipLookUp(const FingertipOptions& o)
@@ -291,7 +291,7 @@ struct FingertipLookUp {
     }
   }
   bool answers(const FingertipResult& touch) const {
-    return !(of_area || of_depth) || touch.normal.sources > 0;
+    return !(of_area || of_depth) || touch.normal.has_force();
   }
 
   template <class Dots, class Watch>
@@ -322,8 +322,8 @@ struct FingertipLookUp {
     }
     touch.normal = fused(touch.by_area, touch.by_depth);
     if (by_flat_area && is_finite(touch.by_area.variance_n2)) {
-      const NormalForceResult<double>& a = touch.by_area;
-      touch.normal = {a.status, a.force_n, a.variance_n2, touch.normal.disagreement, 1};
+      const ForceResult<double>& a = touch.by_area;
+      touch.normal = {a.status, a.force_n, a.variance_n2, touch.normal.disagreement};
     }
     if (of_shift) {  // without contact the shift is 0
       touch.shear = (*of_shift)(shear_by_depth ? depth_mm : area.area_mm2,

@@ -1,0 +1,1306 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Forces by look-up: values by hand, laws for every curve, map and contact, and what is
+// refused.
+#include "fingerpad/force/look_up.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/curves.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
+#include "support/pad.hpp"
+#include "support/refusal.hpp"
+
+using namespace fingerpad;
+using test::begins_with;
+using test::refusal;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double missing = test::nan;
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+
+const NormalForce by_area(test::curve_of_area());
+const NormalForce by_depth(test::curve_of_depth());
+
+/// Sums of printed decimals, computed by hand: only the roundoff of double may differ.
+Approx printed(double n) {
+  return Approx(n).epsilon(1e-14).margin(1e-14);
+}
+
+ForceCurve<> line(double slope = 2) {
+  return {{0, slope}, 1, 10};
+}
+ForceCurve<> compensated(ForceCurve<> curve, double per_mm_sq, double per_rad_sq = 0) {
+  curve.per_mm_sq = per_mm_sq;
+  curve.per_rad_sq = per_rad_sq;
+  return curve;
+}
+/// A residual of 0 and no other errors, so that forces have a variance.
+ForceCurve<> with_errors(ForceCurve<> curve) {
+  curve.residual_sd_n = 0;
+  return curve;
+}
+
+std::string refused(const ForceCurve<>& curve) {
+  return refusal([&] { (void)NormalForce(curve); });
+}
+std::string refused(const ShearMap<>& map) {
+  return refusal([&] { (void)Shear(map); });
+}
+
+/// 1 N/mm and 1 N mm/rad: forces equal the normalised displacement.
+ShearMap<> ones(double reference = 1, double of_displacement = 0, double of_rotation = 0) {
+  return test::straight_map<double>(reference, of_displacement, of_rotation, 1, 1);
+}
+ShearMap<> bent() {
+  return {1, {{2, 0.5, -0.25, 0}, 0, 1.5}, {{30, 0, 8, 0}, 0, 0.5}};
+}
+ShearMap<> slanted() {
+  ShearMap<> map = test::straight_map<double>(1, 0, 0, 1, 40);
+  map.x_by_x = 2, map.x_by_y = -0.5, map.y_by_x = 0.25, map.y_by_y = 3;
+  map.offset_n = {0.125, -0.25};
+  return map;
+}
+
+}  // namespace
+
+// ---- normal force, by hand
+
+TEST_CASE("normal force: names of statuses", "[normal_force]") {
+  CHECK(std::string(name_of(ForceStatus::no_contact)) == "no contact");
+  CHECK(std::string(name_of(ForceStatus::measured)) == "measured");
+  CHECK(std::string(name_of(ForceStatus::below_range)) == "below range");
+  CHECK(std::string(name_of(ForceStatus::beyond_range)) == "beyond range");
+  CHECK(std::string(name_of(ForceStatus::held_at_zero)) == "held at zero");
+  CHECK(std::string(name_of(ForceStatus::disagreeing)) == "disagreeing");
+  CHECK(begins_with(name_of(ForceStatus::implausible), "implausible"));
+  CHECK(std::string(name_of(ForceStatus::not_finite)) == "not finite");
+}
+
+TEST_CASE("normal force: the published curves", "[normal_force]") {
+  CHECK(by_area(100).force_n == printed(3.3342));
+  CHECK(by_area(478).force_n == printed(28.03272));
+  CHECK(by_depth(4).force_n == printed(14.9847));
+  CHECK(by_depth(5.62).force_n == printed(27.9794004));
+  for (const double area : {18.0, 478.0}) {
+    CHECK(by_area(area).status == ForceStatus::measured);
+  }
+  // by the slope: 0.00016 S + 0.0191, 1.552 D + 0.5563
+  CHECK(by_area.curve().slope(100) == printed(0.0351));
+  CHECK(by_depth.curve().slope(4) == printed(6.7643));
+  CHECK(NormalForce(test::curve_of_area<float>())(100.0F).force_n == Approx(3.3342F));
+}
+
+TEST_CASE("normal force: the compensation", "[normal_force]") {
+  const NormalForce force(compensated(line(), 0.02, -3));
+  CHECK(force(4).force_n == 8);
+  CHECK(force(4, {3, 4}).force_n == printed(8 * 1.5));
+  CHECK(force(4, {0, 0}, 0.2).force_n == printed(8 * 0.88));
+  CHECK(force(4, {-4, 3}, -0.2).force_n == printed(8 * 1.38));
+  CHECK(NormalForce(line())(4, {3, 4}, 0.2).force_n == 8);
+}
+
+TEST_CASE("normal force: every degree", "[normal_force]") {
+  CHECK(NormalForce(ForceCurve<>{{3, 2}, 1, 10})(4).force_n == 11);
+  CHECK(NormalForce(ForceCurve<>{{1, 0, 0, 2}, 1, 10})(2).force_n == 17);
+  CHECK(NormalForce(ForceCurve<>{{1, 0, 0, 0, 2}, 1, 10})(2).force_n == 33);
+  const ForceCurve<> fifth{{1, 1, 1, 1, 1, 1}, 1, 10};
+  CHECK(NormalForce(fifth)(2).force_n == 63);
+  CHECK(fifth.slope(2) == 1 + 4 + 12 + 32 + 80);
+}
+
+TEST_CASE("normal force: no contact, no force", "[normal_force]") {
+  const NormalForce moved(compensated(test::curve_of_area(), 0.1, 2));
+  for (const double none : {0.0, -0.0, -1e-300, -3.0, -1e300}) {
+    CAPTURE(none);
+    for (const auto& r : {by_area(none), by_depth(none), moved(none, {3, 4}, 0.5)}) {
+      CHECK(r.status == ForceStatus::no_contact);
+      CHECK(r.has_force());
+      CHECK(r.force_n == 0);
+      CHECK_FALSE(std::signbit(r.force_n));
+    }
+  }
+}
+
+TEST_CASE("normal force: below the range it fades out", "[normal_force]") {
+  const auto r = by_area(9);  // half the start: half of 0.00648 + 0.1719 + 0.6242
+  CHECK(r.status == ForceStatus::below_range);
+  CHECK(r.force_n == printed(0.40129));
+  CHECK(by_area(18 - 1e-9).status == ForceStatus::below_range);
+  CHECK(by_area(18 - 1e-9).force_n == Approx(0.99392).epsilon(1e-9));
+  CHECK(by_area(1e-9).force_n < 1e-19);
+  CHECK(by_area(1e-9).force_n > 0);
+  // at a quarter of the range's start: 3/16 - 2/64 of the force
+  CHECK(NormalForce(line())(0.25).force_n == printed(0.15625 * 0.5));
+  // a curve identified from 0 on is not faded
+  CHECK(NormalForce(ForceCurve<>{{0, 2}, 0, 10})(1e-9).force_n == printed(2e-9));
+  CHECK(NormalForce(ForceCurve<>{{0, 2}, 0, 10})(1e-9).status == ForceStatus::measured);
+}
+
+TEST_CASE("normal force: beyond the range it goes on along the tangent", "[normal_force]") {
+  const auto r = by_area(578);  // 28.03272 + 100 (0.00016 * 478 + 0.0191)
+  CHECK(r.status == ForceStatus::beyond_range);
+  CHECK(r.force_n == printed(37.59072));
+  CHECK(by_area(1478).force_n == printed(28.03272 + 95.58));
+  CHECK(by_area(std::nextafter(478.0, 500.0)).status == ForceStatus::beyond_range);
+  // a cubic that would turn down beyond the range continues along its tangent
+  const ForceCurve<> cubic{{0, 3, 0, -1}, 0.25, 0.9};
+  CHECK(NormalForce(cubic)(5).force_n == printed(2.7 - 0.729 + 4.1 * (3 - 2.43)));
+  // value and slope are continuous: differences on both sides
+  for (const double h : {1e-3, 1e-4}) {
+    const double end = by_area(478).force_n;
+    CHECK((by_area(478 + h).force_n - end) / h == Approx(0.09558).epsilon(1e-7));
+    CHECK((end - by_area(478 - h).force_n) / h == Approx(0.09558).margin(1e-4 * h + 1e-8));
+  }
+}
+
+TEST_CASE("normal force: the variance beyond the range is that of the tangent, and of the curve",
+          "[normal_force]") {
+  ForceCurve<> curve = with_errors(test::curve_of_area());
+  curve.covariance[0][0] = 0.01;
+  curve.covariance[1][1] = 1e-6;
+  curve.covariance[2][2] = 1e-12;
+  const NormalForce force(curve);
+  const double area = 578, past = 100;
+  const double tangent = 0.01 + 1e-6 * area * area + 1e-12 * square(478.0 * 478 + past * 2 * 478);
+  const double bend = 0.00008 * past * past;  // distance of the curve from its tangent
+  CHECK(force(area).variance_n2 == Approx(tangent + bend * bend).epsilon(1e-12));
+  CHECK_FALSE(force(area).ok());
+  CHECK(force(area).has_force());
+  // no step at the end of the range
+  CHECK(force(478.001).variance_n2 == Approx(force(478).variance_n2).epsilon(1e-5));
+}
+
+TEST_CASE("normal force: what a compensation makes negative is held at zero", "[normal_force]") {
+  const NormalForce force(compensated(line(), -1));
+  CHECK(force(4, {0.9, 0}).status == ForceStatus::measured);
+  CHECK(force(4, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(force(0.5, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(force(11, {1.1, 0}).status == ForceStatus::held_at_zero);
+  CHECK(force(0, {1.1, 0}).status == ForceStatus::no_contact);
+  CHECK(force(11, {1.1, 0}).force_n == 0);
+}
+
+TEST_CASE("normal force: what is no number gives none", "[normal_force]") {
+  const auto expect_none = [](const ForceResult<double>& r) {
+    CHECK(r.status == ForceStatus::not_finite);
+    CHECK_FALSE(r.has_force());
+    CHECK(std::isnan(r.force_n));
+    CHECK(std::isnan(r.variance_n2));
+  };
+  const NormalForce moved(compensated(with_errors(line()), 0.1, 0.1));
+  for (const double bad : {missing, infinity, -infinity}) {
+    CAPTURE(bad);
+    expect_none(by_area(bad));
+    expect_none(moved(bad));
+    expect_none(moved(4, {bad, 0}));
+    expect_none(moved(4, {0, bad}));
+    expect_none(moved(4, {0, 0}, bad));
+    expect_none(moved(0, {0, 0}, bad));  // even without contact: no force was computed
+    // unused input does no harm
+    CHECK(by_area(100, {bad, bad}, bad).force_n == by_area(100).force_n);
+  }
+  expect_none(ForceResult<double>());
+  // what overflows
+  const NormalForce steep(ForceCurve<>{{0, 1e10}, 1, 10});
+  expect_none(steep(1e299));
+}
+
+TEST_CASE("normal force: curves that are refused", "[normal_force]") {
+  using C = ForceCurve<>;
+  CHECK(refused(test::curve_of_area()) == "accepted");
+  CHECK(refused(test::curve_of_depth()) == "accepted");
+  const std::string owner = "ForceCurve: ";
+  CHECK(refused(C{{missing, 1}, 1, 2}) == owner + "coefficients = nan, must be finite");
+  CHECK(refused(C{{0, infinity}, 1, 2}) == owner + "coefficients = inf, must be finite");
+  CHECK(refused(C{{0, 1, -infinity}, 1, 2}) == owner + "coefficients = -inf, must be finite");
+  CHECK(refused(C{}) == owner + "from = nan, must be finite and >= 0");
+  CHECK(refused(C{{0, 1}, -0.5, 2}) == owner + "from = -0.5, must be finite and >= 0");
+  CHECK(refused(C{{0, 1}, infinity, 2}) == owner + "from = inf, must be finite and >= 0");
+  CHECK(refused(C{{0, 1}, 0, 2}) == "accepted");
+  CHECK(refused(C{{0, 1}, 1}) == owner + "to = nan, must be finite and > 1");
+  CHECK(refused(C{{0, 1}, 2, 2}) == owner + "to = 2, must be finite and > 2");
+  CHECK(refused(C{{0, 1}, 2, infinity}) == owner + "to = inf, must be finite and > 2");
+  // at either end and in between
+  const std::string slope = owner + "slope within the range = ";
+  CHECK(begins_with(refused(C{{0, 1, -0.25}, 1, 3}), slope + "-0.0625"));
+  CHECK(begins_with(refused(C{{0, -3, 1}, 1, 3}), slope + "-1"));
+  CHECK(begins_with(refused(C{{1, -1}, 1, 3}), slope + "-1"));
+  CHECK(begins_with(refused(C{{0, 11, -6, 1}, 1, 3}), slope + "-0.25"));
+  CHECK(refused(C{{0, 12, -6, 1}, 1, 3}) == "accepted");
+  CHECK(refused(C{{3}, 1, 3}) == "accepted");  // constant
+  CHECK(begins_with(refused(C{{0, 1e308, 1e308}, 1, 10}), owner + "force at to = inf"));
+  // no curve begins with a step
+  CHECK(begins_with(refused(C{{1, 1}, 0, 10}), owner + "c_0 of a curve from 0 on = 1"));
+  CHECK(NormalForce(C{{1, 1}, 1e-310, 10})(0).force_n == 0);
+  // a constant curve does not fall, whatever its sign
+  CHECK(NormalForce(C{{-3}, 1, 3})(2).status == ForceStatus::held_at_zero);
+  // compensation
+  CHECK(refused(compensated(line(), -3, 4)) == "accepted");
+  CHECK(refused(compensated(line(), missing)) == owner + "per_mm_sq = nan, must be finite");
+  CHECK(refused(compensated(line(), 0, -infinity)) == owner + "per_rad_sq = -inf, must be finite");
+}
+
+TEST_CASE("normal force: errors that are refused", "[normal_force]") {
+  const std::string owner = "ForceCurve: ";
+  const auto with = [](const auto& change) {
+    ForceCurve<> curve = with_errors(line());
+    change(curve);
+    return refused(curve);
+  };
+  const auto correlated = [&](double a, double b, double both, double other) {
+    return with([&](auto& c) {
+      c.covariance[1][1] = a, c.covariance[2][2] = b;
+      c.covariance[1][2] = both, c.covariance[2][1] = other;
+    });
+  };
+  CHECK(correlated(1, 1, 0.5, 0.5) == "accepted");
+  CHECK(correlated(1e-9, 1e-2, 1e-6, 1e-6) == "accepted");
+  CHECK(correlated(1, 4, 2.001, 2.001) == owner + "covariance has a correlation above 1");
+  CHECK(correlated(1, 4, 0, -3) == owner + "covariance has a correlation above 1");
+  CHECK(correlated(0, 1, 0.5, 0.5) == owner + "covariance has a correlation above 1");
+  CHECK(correlated(1, 1, missing, 0) == owner + "covariance has a correlation above 1");
+  CHECK(begins_with(correlated(1, -0.5, 0, 0), owner + "variance of a coefficient = -0.5"));
+  CHECK(begins_with(correlated(infinity, 1, 0, 0), owner + "variance of a coefficient = inf"));
+  CHECK(with([](auto& c) { c.residual_sd_n = -1; }) ==
+        owner + "residual_sd_n = -1, must be finite and >= 0");
+  CHECK(with([](auto& c) { c.residual_sd_n = infinity; }) ==
+        owner + "residual_sd_n = inf, must be finite and >= 0");
+  CHECK(with([](auto& c) { c.residual_sd_n = missing; }) == "accepted");  // no variance
+  CHECK(with([](auto& c) { c.measure_sd = -0.25; }) ==
+        owner + "measure_sd = -0.25, must be finite and >= 0");
+  CHECK(with([](auto& c) { c.measure_sd = missing; }) ==
+        owner + "measure_sd = nan, must be finite and >= 0");
+}
+
+TEST_CASE("normal force: variance by hand", "[normal_force]") {
+  // gradient (1, 4, 16), slope 2
+  ForceCurve<> curve = with_errors(line());
+  const double c[3][3] = {{0.04, 0.01, 0}, {0.01, 0.09, -0.002}, {0, -0.002, 0.0004}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::copy_n(c[i], 3, curve.covariance[i].begin());
+  }
+  const auto variance = [&](double m) { return NormalForce(curve)(m).variance_n2; };
+  const double by_parameters = 0.04 + 2 * 4 * 0.01 + 16 * 0.09 - 2 * 64 * 0.002 + 256 * 0.0004;
+  CHECK(variance(4) == printed(by_parameters));
+  curve.residual_sd_n = 0.5;
+  CHECK(variance(4) == printed(by_parameters + 0.25));
+  curve.measure_sd = 0.3;
+  CHECK(variance(4) == printed(by_parameters + 0.25 + 0.36));
+  CHECK(variance(0) == 0.25);
+  CHECK(variance(-3) == 0.25);
+  // noise of this measure alone adds to it
+  CHECK(NormalForce(curve)(4, {0, 0}, 0, 0.25).variance_n2 ==
+        printed(by_parameters + 0.25 + 0.36 + 1));
+  // a compensation's gain multiplies all terms but the residual
+  const NormalForce doubled(compensated(curve, 1));
+  CHECK(doubled(4, {1, 0}).variance_n2 == printed(4 * (by_parameters + 0.36) + 0.25));
+  CHECK(doubled(4, {0, 0}).variance_n2 == printed(by_parameters + 0.25 + 0.36));
+  // no variance without errors
+  CHECK(std::isnan(by_area(100).variance_n2));
+}
+
+TEST_CASE("normal force: two measures fused", "[normal_force]") {
+  using R = ForceResult<double>;
+  const auto at = [](double force, double variance) {
+    return R{ForceStatus::measured, force, variance};
+  };
+  // weights 1/4 and 1: (2/4 + 7) / (5/4)
+  const auto both = fused(at(2, 4), at(7, 1));
+  CHECK(both.force_n == printed(6));
+  CHECK(both.variance_n2 == printed(0.8));
+  CHECK(both.disagreement == printed(-std::sqrt(5.0)));
+  const auto twice = fused(at(3, 0.5), at(3, 0.5));
+  CHECK(twice.force_n == 3);
+  CHECK(twice.variance_n2 == 0.25);
+  CHECK(twice.disagreement == 0);
+  // one force is exact
+  const auto exact = fused(at(3, 0), at(5, 1));
+  CHECK(exact.force_n == 3);
+  CHECK(exact.variance_n2 == 0);
+  CHECK(exact.disagreement == -2);
+  CHECK(fused(at(5, 1), at(3, 0)).force_n == 3);
+  // both are exact: their difference then has no measure
+  CHECK(fused(at(3, 0), at(3, 0)).disagreement == 0);
+  const auto exact_both = fused(at(3, 0), at(5, 0));
+  CHECK(exact_both.force_n == 4);
+  CHECK(exact_both.variance_n2 == 0);
+  CHECK(std::isnan(exact_both.disagreement));
+  // only one force is usable
+  for (const R& lacking :
+       {R{}, at(9, missing), at(9, infinity), R{ForceStatus::not_finite, missing, 1}}) {
+    for (const auto& one : {fused(at(3, 0.5), lacking), fused(lacking, at(3, 0.5))}) {
+      CHECK(one.force_n == 3);
+      CHECK(one.variance_n2 == 0.5);
+      CHECK(std::isnan(one.disagreement));
+    }
+    const auto none = fused(lacking, lacking);
+    CHECK_FALSE(none.has_force());
+    CHECK(std::isnan(none.variance_n2));
+    CHECK(std::isnan(none.disagreement));
+  }
+  // the worse status of the two, and none where they contradict each other
+  CHECK(twice.ok());
+  CHECK(fused(at(3, 1), R{ForceStatus::beyond_range, 4, 1}).status == ForceStatus::beyond_range);
+  CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).status == ForceStatus::measured);
+  CHECK(fused(at(3, 0.5), R{}).status == ForceStatus::measured);
+  CHECK_FALSE(fused(R{}, R{}).ok());
+  CHECK(fused(at(3, 0.5), at(6.1, 0.5)).status == ForceStatus::disagreeing);
+  CHECK(fused(at(3, 0.5), at(6.1, 0.5), 4).ok());
+  CHECK(exact_both.status == ForceStatus::disagreeing);
+  // an implausible one counts even without a variance
+  CHECK(fused(at(3, 0.5), R{ForceStatus::implausible, 1e7}).status == ForceStatus::implausible);
+  // zero forces take part as well
+  CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).force_n == 1);
+}
+
+TEST_CASE("normal force: forces by area and by depth that agree, fused", "[normal_force]") {
+  ForceCurve<> of_area = test::curve_of_area(), of_depth = test::curve_of_depth();
+  of_area.covariance[0][0] = of_depth.covariance[0][0] = 0.01;
+  of_area.residual_sd_n = 0.5, of_area.measure_sd = 5;
+  of_depth.residual_sd_n = 0.27, of_depth.measure_sd = 0.02;
+  const NormalForce area(of_area), depth(of_depth);
+  const auto a = area(225), d = depth(3);  // 9.0 and 9.0 N
+  const auto both = fused(a, d);
+  CHECK(both.force_n > (std::min)(a.force_n, d.force_n));
+  CHECK(both.force_n < (std::max)(a.force_n, d.force_n));
+  CHECK(both.variance_n2 < (std::min)(a.variance_n2, d.variance_n2));
+  CHECK(std::abs(both.disagreement) < 1);
+  // a sharper object: as deep, but half the area
+  CHECK(std::abs(fused(area(110), depth(3)).disagreement) > 3);
+}
+
+// ---- normal force, laws for every curve
+
+namespace {
+
+using Vector = Point2<double>;
+
+/// A curve that rises everywhere: no coefficient is negative.
+ForceCurve<> any_rising(int degree) {
+  ForceCurve<> curve;
+  curve.from = test::log_uniform(0.01, 20);
+  curve.to = curve.from * test::uniform(2, 40);
+  double power = 1;
+  for (int k = 0; k <= degree; ++k) {
+    curve.coefficients[static_cast<std::size_t>(k)] =
+        test::whole(0, 3) == 0 ? 0 : test::uniform(0, 10) / power;
+    power *= curve.to;
+  }
+  return curve;
+}
+ForceCurve<> any_rising() {
+  return any_rising(static_cast<int>(test::whole(1, 5)));
+}
+
+/// Any valid quadratic: its slope is not negative at either end; all else is free.
+ForceCurve<> any_quadratic() {
+  const double from = test::log_uniform(0.01, 20), to = from * test::uniform(2, 40);
+  const double slope_from = test::log_uniform(0.01, 10) / to;
+  const double slope_to = test::log_uniform(0.01, 10) / to;
+  const double bend = (slope_to - slope_from) / (2 * (to - from));
+  return {{test::uniform(-5, 5), slope_from - 2 * bend * from, bend}, from, to};
+}
+ForceCurve<> any_curve() {
+  return test::whole(0, 1) == 0 ? any_rising() : any_quadratic();
+}
+/// With a compensation in three of four cases.
+ForceCurve<> any_compensated(ForceCurve<> curve) {
+  return test::whole(0, 3) == 0
+             ? curve
+             : compensated(curve, test::uniform(-0.2, 0.2), test::uniform(-20, 20));
+}
+
+Vector any_displacement() {
+  return {test::uniform(-4, 4), test::uniform(-4, 4)};
+}
+
+/// Largest change of f between neighbouring numbers that bisection finds: it keeps the half in
+/// which f changes more, until a single step is left.
+template <class F>
+double step_within(const F& f, double low, double high) {
+  double at_low = f(low), at_high = f(high);
+  for (int k = 0; k < 70; ++k) {
+    const double middle = low + (high - low) / 2;
+    const double at_middle = f(middle);
+    if (std::abs(at_middle - at_low) > std::abs(at_high - at_middle)) {
+      high = middle, at_high = at_middle;
+    } else {
+      low = middle, at_low = at_middle;
+    }
+  }
+  return std::abs(at_high - at_low);
+}
+
+/// Whether f has no step at x or beside it, and no other value at x alone.
+template <class F>
+bool no_step_at(const F& f, double x, double width) {
+  const double margin = 1e-11 * (1 + f(x));
+  return step_within(f, x - width, x) <= margin && step_within(f, x, x + width) <= margin;
+}
+
+double scale_of(const ForceCurve<>& curve) {
+  return 1 + std::abs(curve.force_n(curve.to));
+}
+
+}  // namespace
+
+TEST_CASE("normal force: never negative, and the status says where it is from",
+          "[normal_force][law]") {
+  rc::prop("for any finite numbers", [] {
+    const auto curve = any_compensated(any_curve());
+    const NormalForce force(curve);
+    const auto any = [](double largest) {
+      return test::whole(0, 4) > 0 ? test::uniform(-largest, largest)
+                                   : *rc::gen::element(0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e-160,
+                                                       1e-30, 1e30, 1e150, -1e150, 1e200, -1e200);
+    };
+    const double measure = test::whole(0, 9) == 0   ? curve.from
+                           : test::whole(0, 9) == 0 ? curve.to
+                                                    : any(1.5 * curve.to);
+    const Vector displacement{any(5), any(5)};
+    const double rotation = any(0.5);
+    const auto r = force(measure, displacement, rotation);
+    if (r.status == ForceStatus::not_finite) {  // squares of displacements times the force overflow
+      RC_ASSERT(curve.per_mm_sq != 0 || curve.per_rad_sq != 0);
+      RC_ASSERT(std::max({std::abs(displacement.x), std::abs(displacement.y),
+                          std::abs(rotation)}) >= 1e100);
+      RC_ASSERT(std::isnan(r.force_n));
+      return;
+    }
+    RC_ASSERT(r.has_force());
+    RC_ASSERT(r.force_n >= 0);
+    RC_ASSERT((r.status == ForceStatus::no_contact) == (measure <= 0));
+    RC_ASSERT(r.status != ForceStatus::no_contact || r.force_n == 0);
+    RC_ASSERT(r.status != ForceStatus::held_at_zero || r.force_n == 0);
+    RC_ASSERT(r.status != ForceStatus::measured || (measure >= curve.from && measure <= curve.to));
+    RC_ASSERT(r.status != ForceStatus::below_range || (measure > 0 && measure < curve.from));
+    RC_ASSERT(r.status != ForceStatus::beyond_range || measure > curve.to);
+  });
+  rc::prop("and none without contact, whatever moves", [] {
+    const NormalForce force(any_compensated(any_curve()));
+    const double none = test::whole(0, 3) == 0 ? 0 : -test::log_uniform(1e-150, 1e150);
+    const auto r = force(none, any_displacement(), test::uniform(-1, 1));
+    RC_ASSERT(r.status == ForceStatus::no_contact);
+    RC_ASSERT(r.force_n == 0);
+  });
+}
+
+TEST_CASE("normal force: no step anywhere", "[normal_force][law]") {
+  rc::prop("in the measure, the displacement and the angle", [] {
+    const auto curve = any_compensated(any_curve());
+    const NormalForce force(curve);
+    const Vector displacement = any_displacement();
+    const double rotation = test::uniform(-0.3, 0.3);
+    const auto of_measure = [&](double m) { return force(m, displacement, rotation).force_n; };
+    const double width = 1e-5 * curve.from;
+    for (const double measure : {0.0, curve.from, curve.to, test::uniform(0, 1) * curve.from,
+                                 test::uniform(0, 1.5) * curve.to}) {
+      RC_ASSERT(no_step_at(of_measure, measure, width));
+    }
+    const double measure = test::uniform(0.5, 1.2) * curve.to;
+    const auto of_x = [&](double x) { return force(measure, {x, 0.5}, rotation).force_n; };
+    const auto of_angle = [&](double t) { return force(measure, displacement, t).force_n; };
+    for (const double share : {-1.0, 0.0, 1.0, test::uniform(-1.5, 1.5)}) {
+      RC_ASSERT(no_step_at(of_x, share, 1e-5));
+      RC_ASSERT(no_step_at(of_angle, 0.02 * share, 1e-7));
+    }
+  });
+  rc::prop("from no contact on, by the square of the measure at least", [] {
+    const auto curve = any_compensated(any_rising());
+    const NormalForce force(curve);
+    const Vector displacement = any_displacement();
+    for (const double share : {1e-2, 1e-4, 1e-8}) {
+      RC_ASSERT(force(share * curve.from, displacement).force_n <=
+                3 * share * share * 10 * (scale_of(curve) + 30));
+    }
+  });
+}
+
+TEST_CASE("normal force: a larger contact presses no less", "[normal_force][law]") {
+  rc::prop("with the same motion, from no contact to beyond the range", [] {
+    const auto curve = any_compensated(any_rising());
+    const NormalForce force(curve);
+    const Vector displacement = any_displacement();
+    const double rotation = test::uniform(-0.3, 0.3);
+    const double top = test::whole(0, 1) == 0 ? 1.5 * curve.to : 1.5 * curve.from;
+    const double a = test::uniform(-0.1, 1) * top, b = test::uniform(-0.1, 1) * top;
+    const double less = force((std::min)(a, b), displacement, rotation).force_n;
+    const double more = force((std::max)(a, b), displacement, rotation).force_n;
+    RC_ASSERT(less <= more * (1 + 64 * ulp));
+  });
+  rc::prop("by any accepted quadratic from the start of its range on, along a line beyond it", [] {
+    const auto curve = any_quadratic();
+    const NormalForce force(curve);
+    const double a = test::uniform(curve.from, 2 * curve.to);
+    const double b = test::uniform(curve.from, 2 * curve.to);
+    const double margin = 1e-13 * scale_of(curve);
+    RC_ASSERT(force((std::min)(a, b)).force_n <= force((std::max)(a, b)).force_n + margin);
+    const double past = test::uniform(0, 1) * curve.to;
+    const double expected = curve.force_n(curve.to) + past * curve.slope(curve.to);
+    RC_ASSERT(std::abs(force(curve.to + past).force_n - (std::max)(0.0, expected)) <= margin);
+  });
+}
+
+TEST_CASE("normal force: the compensation multiplies, and knows no direction",
+          "[normal_force][law]") {
+  rc::prop("nor anything where nothing moved", [] {
+    const auto plain = any_rising(), curve = any_compensated(plain);
+    const NormalForce force(curve);
+    const double measure = test::uniform(0, 1.5) * curve.to;
+    const double still = NormalForce(plain)(measure).force_n;
+    RC_ASSERT(force(measure).force_n == still);
+    RC_ASSERT(force(measure, {-0.0, 0.0}, -0.0).force_n == still);
+    const Vector d = any_displacement();
+    const double rotation = test::uniform(-0.3, 0.3);
+    const double moved = force(measure, d, rotation).force_n;
+    const double factor =
+        1 + curve.per_mm_sq * squared_norm(d) + curve.per_rad_sq * rotation * rotation;
+    const double expected = (std::max)(0.0, factor * still);
+    RC_ASSERT(std::abs(moved - expected) <= 1e-14 * 10 * still);
+    // mirrored, rotated by a right angle, twisted the other way: equal to the last bit
+    for (const Vector& other : {Vector{-d.x, d.y}, Vector{d.x, -d.y}, Vector{-d.x, -d.y},
+                                Vector{d.y, d.x}, Vector{-d.y, d.x}}) {
+      RC_ASSERT(force(measure, other, rotation).force_n == moved);
+      RC_ASSERT(force(measure, other, -rotation).force_n == moved);
+    }
+    const double turn = test::uniform(-3, 3), c = std::cos(turn), s = std::sin(turn);
+    const double rotated = force(measure, {c * d.x - s * d.y, s * d.x + c * d.y}, rotation).force_n;
+    RC_ASSERT(std::abs(rotated - moved) <= 1e-12 * (100 + 10 * scale_of(curve) + moved));
+  });
+}
+
+TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
+  rc::prop("to the last bit, if they differ by powers of 2", [] {
+    auto curve = any_compensated(any_rising());
+    curve.residual_sd_n = test::uniform(0, 1);
+    curve.measure_sd = test::uniform(0, 1);
+    curve.covariance[0][0] = test::uniform(0, 1);
+    const auto unit = [] { return std::ldexp(1.0, static_cast<int>(test::whole(-9, 9))); };
+    const double area = unit(), newton = unit(), length = unit(), angle = unit();
+    auto other = curve;
+    double power = newton;
+    for (double& c : other.coefficients) {
+      c *= power;
+      power /= area;
+    }
+    other.from *= area, other.to *= area, other.measure_sd *= area;
+    other.residual_sd_n *= newton;
+    other.covariance[0][0] *= newton * newton;
+    other.per_mm_sq /= length * length;
+    other.per_rad_sq /= angle * angle;
+    const double m = test::uniform(0, 1.5) * curve.to;
+    const Vector d = any_displacement();
+    const double t = test::uniform(-0.3, 0.3);
+    const auto a = NormalForce(curve)(m, d, t);
+    const auto b = NormalForce(other)(m * area, length * d, t * angle);
+    RC_ASSERT(a.status == b.status || b.status == ForceStatus::implausible);
+    RC_ASSERT(a.force_n * newton == b.force_n);
+    RC_ASSERT(a.variance_n2 * newton * newton == b.variance_n2);
+  });
+}
+
+namespace {
+
+/// Linear combinations of independent normal numbers; their covariance is factor times its
+/// transpose.
+struct Spread {
+  std::array<std::array<double, 3>, 3> factor = {};
+
+  ForceCurve<> with_covariance(ForceCurve<> curve) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          curve.covariance[i][j] += factor[i][k] * factor[j][k];
+        }
+      }
+    }
+    return curve;
+  }
+  ForceCurve<> moved(ForceCurve<> curve, test::Random& random) const {
+    const std::array<double, 3> normal = {random.normal(), random.normal(), random.normal()};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        curve.coefficients[i] += factor[i][k] * normal[k];
+      }
+    }
+    return curve;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("normal force: the variance is that of parameters and measures drawn at random",
+          "[normal_force][law]") {
+  // A variance from n draws has a relative standard deviation of sqrt(2 / n); the margin is four of
+  // it. Terms of higher order are below 0.1 %, because the errors of the parameters are small.
+  constexpr int draws = 4000;
+  const double margin = 4 * std::sqrt(2.0 / draws);
+  const Vector displacement{1.5, 2};
+  Spread spread;
+  spread.factor = {{{0.02, 0, 0}, {-1e-4, 2e-4, 0}, {1e-7, -3e-7, 2e-7}}};
+  for (const double measure : {9.0, 40.0, 450.0}) {
+    for (const double noise : {0.0, 1.0}) {
+      for (const auto& plain :
+           {test::curve_of_area(), compensated(test::curve_of_area(), 0.05, 3)}) {
+        CAPTURE(measure, noise, plain.per_mm_sq);
+        auto curve = spread.with_covariance(plain);
+        curve.residual_sd_n = 0.02 * noise;
+        curve.measure_sd = 0.3 * noise;
+        const auto said = NormalForce(curve)(measure, displacement, -0.1);
+        test::Random random(static_cast<std::uint64_t>(1000 * measure));
+        double sum = 0, sum_sq = 0;
+        for (int k = 0; k < draws; ++k) {
+          const NormalForce other(spread.moved(plain, random));
+          const double at = measure + curve.measure_sd * random.normal();
+          const double off = other(at, displacement, -0.1).force_n +
+                             curve.residual_sd_n * random.normal() - said.force_n;
+          sum += off;
+          sum_sq += off * off;
+        }
+        const double mean = sum / draws;
+        CHECK(said.variance_n2 / (sum_sq / draws - mean * mean) == Approx(1).epsilon(margin));
+      }
+    }
+  }
+}
+
+TEST_CASE("normal force: a variance is never negative, and more noise is no less",
+          "[normal_force][law]") {
+  rc::prop("of any parameters' covariance", [] {
+    const auto plain = any_rising(2);
+    Spread spread;
+    double unit = 1;
+    for (auto& row : spread.factor) {
+      for (double& entry : row) {
+        entry = test::uniform(-1, 1) * unit;
+      }
+      unit /= plain.to;
+    }
+    auto curve = spread.with_covariance(plain);
+    curve.residual_sd_n = test::uniform(0, 1);
+    curve.measure_sd = test::uniform(0, 0.1) * curve.from;
+    const double m = test::uniform(-0.1, 1.5) * curve.to;
+    const auto variance = [&] { return NormalForce(curve)(m).variance_n2; };
+    const double before = variance();
+    const double floor = square(curve.residual_sd_n);
+    RC_ASSERT(before >= floor - 1e-13 * (1 + before));
+    RC_ASSERT(m > 0 || before == floor);
+    curve.covariance[0][0] += 0.5;
+    const double with_covariance = variance();
+    RC_ASSERT(with_covariance >= before);
+    curve.measure_sd *= 2;
+    const double with_noise = variance();
+    RC_ASSERT(with_noise >= with_covariance);
+    curve.residual_sd_n += 1;
+    RC_ASSERT(variance() > with_noise);
+  });
+}
+
+TEST_CASE("normal force: two forces fused lie between them", "[normal_force][law]") {
+  using R = ForceResult<double>;
+  const auto any = [] {
+    return R{ForceStatus::measured, test::log_uniform(1e-3, 1e3), test::log_uniform(1e-12, 1e12)};
+  };
+  rc::prop("surer than either, in any order", [&] {
+    const R a = any(), b = any();
+    const auto f = fused(a, b);
+    const double margin = 4 * ulp;
+    const double low = (std::min)(a.force_n, b.force_n);
+    const double high = (std::max)(a.force_n, b.force_n);
+    RC_ASSERT(f.force_n >= low - margin * high);
+    RC_ASSERT(f.force_n <= high * (1 + margin));
+    // 1/v is the sum of both, so v is between half of the smaller variance and all of it
+    const double surer = (std::min)(a.variance_n2, b.variance_n2);
+    RC_ASSERT(f.variance_n2 <= surer * (1 + margin));
+    RC_ASSERT(f.variance_n2 >= surer / 2 * (1 - margin));
+    const double information = 1 / a.variance_n2 + 1 / b.variance_n2;
+    RC_ASSERT(std::abs(f.variance_n2 * information - 1) <= 2 * margin);
+    // nearer to the more certain one
+    const R& sure = a.variance_n2 < b.variance_n2 ? a : b;
+    const R& unsure = a.variance_n2 < b.variance_n2 ? b : a;
+    RC_ASSERT(std::abs(f.force_n - sure.force_n) <=
+              std::abs(f.force_n - unsure.force_n) + 2 * margin * high);
+    const auto g = fused(b, a);
+    RC_ASSERT(std::abs(g.force_n - f.force_n) <= margin * high);
+    RC_ASSERT(std::abs(g.variance_n2 - f.variance_n2) <= margin * f.variance_n2);
+    RC_ASSERT(g.disagreement == -f.disagreement);
+    const double spread = std::sqrt(a.variance_n2 + b.variance_n2);
+    RC_ASSERT(std::abs(f.disagreement * spread - (a.force_n - b.force_n)) <= margin * high);
+    const auto same = fused(a, a);
+    RC_ASSERT(same.force_n == a.force_n);
+    RC_ASSERT(same.variance_n2 == a.variance_n2 / 2);
+    RC_ASSERT(same.disagreement == 0);
+  });
+}
+
+TEST_CASE("normal force: fused forces err as they say", "[normal_force][law]") {
+  // Errors of both forces are random: checks the variance of the fused force and the unit variance
+  // of the disagreement, to four standard deviations of the samples.
+  constexpr int draws = 8000;
+  const double margin = 4 * std::sqrt(2.0 / draws);
+  for (const double variance_b : {0.01, 0.25, 4.0}) {
+    test::Random random(static_cast<std::uint64_t>(100 * variance_b));
+    double sum_sq = 0, disagreement_sq = 0, said = 0;
+    for (int k = 0; k < draws; ++k) {
+      const ForceResult<double> a{ForceStatus::measured, 10 + 0.5 * random.normal(), 0.25};
+      const ForceResult<double> b{ForceStatus::measured,
+                                  10 + std::sqrt(variance_b) * random.normal(), variance_b};
+      const auto f = fused(a, b);
+      sum_sq += (f.force_n - 10) * (f.force_n - 10);
+      disagreement_sq += f.disagreement * f.disagreement;
+      said = f.variance_n2;
+    }
+    CAPTURE(variance_b);
+    CHECK(sum_sq / draws / said == Approx(1).epsilon(margin));
+    CHECK(disagreement_sq / draws == Approx(1).epsilon(margin));
+  }
+}
+
+// ---- shear, by hand
+
+TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
+  struct Factors {
+    double measure, of_displacement, of_rotation;
+  };
+  const auto check_factors = [](const ShearMap<>& map, std::initializer_list<Factors> table) {
+    const Shear shear(map);
+    for (const Factors& f : table) {
+      CAPTURE(f.measure);
+      const auto r = shear(f.measure, {1, -2}, 1);
+      CHECK(test::relative_error(r.tangential_force_n.x, f.of_displacement) < 1e-14);
+      CHECK(r.tangential_force_n.y == -2 * r.tangential_force_n.x);
+      CHECK(test::relative_error(r.moment_n_mm, f.of_rotation) < 1e-14);
+      CHECK(r.status == (f.measure >= 1e6                  ? ForceStatus::implausible
+                         : f.measure < map.reference / 100 ? ForceStatus::below_range
+                                                           : ForceStatus::measured));
+      CHECK(shear_factor(f.measure, map.reference, map.force.exponent) == r.tangential_force_n.x);
+    }
+  };
+  // 2^20 to the 0.65 is 2^13, to the 1.7 is 2^34; 2^20 to the 0.75 is 2^15, to the 2.2 is 2^44
+  check_factors(ones(100, 0.65, 1.7), {{100, 1, 1},
+                                       {25, 0.40612619817811776130, 0.09473228540689988014},
+                                       {50, 0.63728031365963107185, 0.30778610333622907112},
+                                       {200, 1.56916819579350147144, 3.24900958542494209043},
+                                       {300, 2.04234363194535116445, 6.47300783992377929866},
+                                       {478, 2.76457344940414283662, 14.2898419122327119320},
+                                       {104857600, 8192, 17179869184},
+                                       {100 / 1048576.0, 1 / 8192.0, 1 / 17179869184.0}});
+  check_factors(ones(10, 0.75, 2.2), {{10, 1, 1},
+                                      {1, 0.17782794100389228012, 0.00630957344480193249},
+                                      {2, 0.29906975624424410838, 0.02899118654710782125},
+                                      {2.5, 0.35355339059327376220, 0.04736614270344994007},
+                                      {3.5, 0.45504152822405842642, 0.09930010267962126659},
+                                      {5.62, 0.64908599200608596565, 0.28146208095944221636},
+                                      {10485760, 32768, 17592186044416},
+                                      {10 / 1048576.0, 1 / 32768.0, 1 / 17592186044416.0}});
+  // elastic pads by the radius
+  check_factors(ones(5, 1, 3), {{5, 1, 1}, {10, 2, 8}, {2.5, 0.5, 0.125}, {15, 3, 27}});
+}
+
+TEST_CASE("shear: without exponents the size does not matter", "[shear]") {
+  const Shear shear(ones());
+  for (const double any : {1e-300, 0.01, 1.0, 17.0, 1e300}) {
+    const auto r = shear(any, {0.7, -0.2}, 0.1);
+    CHECK(r.tangential_force_n.x == 0.7);
+    CHECK(r.tangential_force_n.y == -0.2);
+    CHECK(r.moment_n_mm == 0.1);
+  }
+  CHECK(shear(0.0, {0.7, -0.2}, 0.1).tangential_force_n.x == 0);
+}
+
+TEST_CASE("shear: a factor exists only in contact", "[shear]") {
+  for (const double measure : {0.0, -0.0, -1.0, -infinity, missing}) {
+    for (const double exponent : {0.65, 0.0, -1.0}) {
+      CHECK(shear_factor(measure, 100.0, exponent) == 0);
+    }
+  }
+  CHECK(shear_factor(400.0, 100.0, 0.0) == 1);
+  CHECK(shear_factor(400.0, 100.0, -0.5) == Approx(0.5));
+}
+
+TEST_CASE("shear: a polynomial along the displacement, and its tangent beyond", "[shear]") {
+  const Shear shear(bent());
+  // |d| = 1: 2 + 0.5 - 0.25
+  auto r = shear(1.0, {0.6, -0.8}, -0.25);
+  CHECK(r.tangential_force_n.x == Approx(2.25 * 0.6).epsilon(1e-15));
+  CHECK(r.tangential_force_n.y == Approx(-2.25 * 0.8).epsilon(1e-15));
+  CHECK(r.moment_n_mm == Approx(-(30 * 0.25 + 8 * 0.015625)).epsilon(1e-15));
+  CHECK(r.status == ForceStatus::measured);
+  // |d| = 2.5, identified up to 1.5: 3.28125 there, with the slope 2 + 1.5 - 0.75 * 2.25
+  r = shear(1.0, {-1.5, 2}, 0);
+  CHECK(std::hypot(r.tangential_force_n.x, r.tangential_force_n.y) ==
+        Approx(3.28125 + 1.8125).epsilon(1e-15));
+  CHECK(r.tangential_force_n.x < 0);
+  CHECK(r.tangential_force_n.y > 0);
+  CHECK(r.status == ForceStatus::beyond_range);
+  // 0.5: 15 + 1, slope 30 + 6
+  r = shear(1.0, {0, 0}, 0.75);
+  CHECK(r.moment_n_mm == Approx(16 + 0.25 * 36).epsilon(1e-15));
+  CHECK(r.status == ForceStatus::beyond_range);
+  // the end itself is within the range
+  r = shear(1.0, {0, 1.5}, -0.5);
+  CHECK(r.status == ForceStatus::measured);
+  CHECK(r.tangential_force_n.y == Approx(3.28125).epsilon(1e-15));
+  CHECK(r.moment_n_mm == Approx(-16).epsilon(1e-15));
+  // no displacement, no force
+  r = shear(1.0, {0, 0}, 0);
+  CHECK(r.tangential_force_n.x == 0);
+  CHECK(r.moment_n_mm == 0);
+  CHECK(r.status == ForceStatus::measured);
+}
+
+TEST_CASE("shear: a straight line needs no range, but reports the one it has", "[shear]") {
+  ShearMap<> map = test::straight_map<double>(1, 0, 0, 2, 3);
+  const Shear open(map);
+  map.force.to = 1.0;
+  map.moment.to = 0.5;
+  const Shear closed(map);
+  for (const double size : {0.5, 5.0, 5e5}) {
+    // neither 100 mm nor half a turn is plausible for a fingertip
+    const bool far = size > 100, turned = size > 3.2;
+    const auto wild = ForceStatus::implausible, beyond = ForceStatus::beyond_range;
+    const auto a = open(1.0, {size, 0}, 0), b = closed(1.0, {size, 0}, 0);
+    CHECK(a.status == (far ? wild : ForceStatus::measured));
+    CHECK(b.status == (far ? wild : size > 1 ? beyond : ForceStatus::measured));
+    CHECK(a.tangential_force_n.x == 2 * size);
+    CHECK(b.tangential_force_n.x == 2 * size);
+    const auto c = open(1.0, {0, 0}, size), d = closed(1.0, {0, 0}, size);
+    CHECK(c.status == (turned ? wild : ForceStatus::measured));
+    CHECK(d.status == (turned ? wild : size > 0.5 ? beyond : ForceStatus::measured));
+    CHECK(c.moment_n_mm == 3 * size);
+    CHECK(d.moment_n_mm == 3 * size);
+  }
+}
+
+TEST_CASE("shear: any linear map", "[shear]") {
+  const Shear shear(slanted());
+  auto r = shear(1.0, {1, 2}, 0.25);
+  CHECK(r.tangential_force_n.x == 2 - 1 + 0.125);
+  CHECK(r.tangential_force_n.y == 0.25 + 6 - 0.25);
+  CHECK(r.moment_n_mm == 10);
+  // offsets are the force of a contact that is not displaced, not of a missing contact
+  r = shear(1.0, {0, 0}, 0);
+  CHECK(r.tangential_force_n.x == 0.125);
+  CHECK(r.tangential_force_n.y == -0.25);
+  r = shear(0.0, {1, 2}, 0.25);
+  CHECK(r.tangential_force_n.x == 0);
+  CHECK(r.tangential_force_n.y == 0);
+  CHECK(r.moment_n_mm == 0);
+  // normalised
+  ShearMap<> map = slanted();
+  map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
+  r = Shear(map)(200.0, {1, 2}, 0.25);
+  CHECK(r.tangential_force_n.x == Approx(1.56916819579350147 + 0.125).epsilon(1e-14));
+  CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
+  CHECK(r.moment_n_mm == Approx(10 * 3.24900958542494209).epsilon(1e-14));
+  // no displacement of a fingertip is beyond the range of this map
+  CHECK(shear(1.0, {60, 80}, -3.1).ok());  // 100 mm
+  CHECK(shear(1.0, {101, 0}, 0.1).status == ForceStatus::implausible);
+  CHECK(shear(1.0, {1, 0}, -15).status == ForceStatus::implausible);
+}
+
+TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {
+  ShearMap<> map = bent();
+  map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
+  for (const double measure : {0.0, -0.0, -1e-300, -7.0, -1e300}) {
+    for (const double size : {0.0, 0.1, 1.0, 1e6}) {
+      const auto r = Shear(map)(measure, {size, -size}, size);
+      CHECK(r.status == ForceStatus::no_contact);
+      CHECK(r.has_force());
+      CHECK(r.has_moment());
+      CHECK(r.tangential_force_n.x == 0);
+      CHECK(r.tangential_force_n.y == 0);
+      CHECK(r.moment_n_mm == 0);
+    }
+  }
+}
+
+TEST_CASE("shear: force and moment fail each by itself", "[shear]") {
+  const Shear shear(bent());
+  const auto good = shear(80.0, {0.2, -0.1}, 0.05);
+  const auto no_force = [](const ShearResult<double>& r) {
+    return r.status == ForceStatus::not_finite && !r.has_force() &&
+           std::isnan(r.tangential_force_n.x) && std::isnan(r.tangential_force_n.y);
+  };
+  const auto no_moment = [](const ShearResult<double>& r) {
+    return r.status == ForceStatus::not_finite && !r.has_moment() && std::isnan(r.moment_n_mm);
+  };
+  for (const double bad : {missing, infinity, -infinity}) {
+    CAPTURE(bad);
+    for (const double measure : {80.0, 0.0}) {
+      for (const auto& d : {Vector{bad, 0.1}, {0.1, bad}, {bad, bad}, {bad, -bad}}) {
+        const auto r = shear(measure, d, 0.05);
+        CHECK(no_force(r));
+        CHECK(r.has_moment());
+        CHECK(r.moment_n_mm == (measure > 0 ? good.moment_n_mm : 0));
+      }
+      const auto r = shear(measure, {0.2, -0.1}, bad);
+      CHECK(no_moment(r));
+      CHECK(r.has_force());
+      CHECK(r.tangential_force_n.x == (measure > 0 ? good.tangential_force_n.x : 0));
+    }
+    const auto r = shear(bad, {0.2, -0.1}, 0.05);
+    CHECK(no_force(r));
+    CHECK(no_moment(r));
+  }
+  CHECK(no_force(ShearResult<double>()));
+  CHECK(no_moment(ShearResult<double>()));
+}
+
+TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
+  const auto with = [](const ShearMap<>& good, const auto& change) {
+    ShearMap<> map = good;
+    change(map);
+    return refused(map);
+  };
+  CHECK(refused(ones()) == "accepted");
+  CHECK(refused(bent()) == "accepted");
+  CHECK(refused(slanted()) == "accepted");
+  CHECK(refused(ShearMap<>()) == "ShearMap: force: c_1 = nan, must be finite and >= 0");
+  for (const double bad : {0.0, -100.0, infinity, missing}) {
+    CHECK(begins_with(with(ones(), [&](auto& m) { m.reference = bad; }), "ShearMap: reference = "));
+  }
+  for (const double bad : {infinity, -infinity, missing}) {
+    for (double ShearMap<>::*const field :
+         {&ShearMap<>::x_by_x, &ShearMap<>::x_by_y, &ShearMap<>::y_by_x, &ShearMap<>::y_by_y}) {
+      CHECK(begins_with(with(slanted(), [&](auto& m) { m.*field = bad; }), "ShearMap: "));
+      CHECK(with(slanted(), [&](auto& m) { m.*field = -3; }) == "accepted");
+    }
+    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.x = bad; }),
+                      "ShearMap: offset_n.x = "));
+    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.y = bad; }),
+                      "ShearMap: offset_n.y = "));
+  }
+  for (ShearLaw<> ShearMap<>::*const law : {&ShearMap<>::force, &ShearMap<>::moment}) {
+    const std::string owner =
+        law == &ShearMap<>::force ? "ShearMap: force: " : "ShearMap: moment: ";
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (const double bad : {infinity, missing}) {
+        CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).coefficients[k] = bad; }),
+                          owner + "c_" + std::to_string(k + 1) + " = "));
+      }
+    }
+    CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).coefficients[0] = -2.5; }),
+                      owner + "c_1 = -2.5, must be"));
+    CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).exponent = infinity; }),
+                      owner + "exponent = inf"));
+    for (const double bad : {0.0, -1.0, infinity, missing}) {
+      CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).to = bad; }), owner + "to = "));
+      const std::string straight = with(ones(), [&](auto& m) { (m.*law).to = bad; });
+      CHECK(begins_with(straight, std::isnan(bad) ? "accepted" : owner + "to = "));
+    }
+  }
+}
+
+TEST_CASE("look-ups are values of some numbers", "[normal_force][shear]") {
+  static_assert(std::is_trivially_copyable_v<NormalForce<float>>);
+  static_assert(std::is_trivially_copyable_v<Shear<double>>);
+  const Shear shear(test::straight_map(100.0F, 0.65F, 1.7F, 2.0F, 3.0F));
+  const auto r = shear(200.0F, {1.0F, 0.0F}, 1.0F);
+  CHECK(r.tangential_force_n.x == Approx(2 * 1.56916819579350147).epsilon(1e-6));
+  CHECK(r.moment_n_mm == Approx(3 * 3.24900958542494209).epsilon(1e-6));
+}
+
+// ---- shear, laws for every pad, contact and shift
+
+namespace {
+
+template <class S = double>
+ShearLaw<S> any_law(int degree) {
+  ShearLaw<S> law;
+  for (int k = 0; k < degree; ++k) {
+    law.coefficients[static_cast<std::size_t>(k)] = static_cast<S>(test::log_uniform(0.1, 100));
+  }
+  law.to = static_cast<S>(test::log_uniform(0.05, 5));
+  return law;
+}
+template <class S = double>
+ShearMap<S> any_map(int degree) {
+  ShearMap<S> map{S(1), any_law<S>(degree), any_law<S>(degree)};
+  // for a contact between 0.6 and 60 mm
+  map.moment.coefficients[0] =
+      map.force.coefficients[0] * static_cast<S>(square(test::log_uniform(0.6, 60)));
+  return map;
+}
+ShearMap<> any_map() {
+  return any_map(static_cast<int>(test::whole(1, 4)));
+}
+template <class S>
+ShearMap<S> normalised(ShearMap<S> map) {
+  map.reference = static_cast<S>(test::log_uniform(1, 1000));
+  map.force.exponent = static_cast<S>(test::uniform(0.2, 2));
+  map.moment.exponent = static_cast<S>(test::uniform(0.2, 3));
+  return map;
+}
+ShearMap<> any_linear() {
+  ShearMap<> map = ones();
+  for (double* k : {&map.x_by_x, &map.x_by_y, &map.y_by_x, &map.y_by_y}) {
+    *k = test::uniform(-10, 10);
+  }
+  return map;
+}
+double any_measure() {
+  return test::log_uniform(0.1, 1000);
+}
+Vector any_shift() {
+  const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
+  const double length = test::log_uniform(1e-4, 10);
+  return {length * std::cos(angle), length * std::sin(angle)};
+}
+double any_rotation() {
+  return test::log_uniform(1e-4, 2) * (test::whole(0, 1) == 0 ? 1 : -1);
+}
+double length(const Vector& p) {
+  return std::hypot(p.x, p.y);
+}
+bool near(double a, double b, double scale, double epsilons) {
+  return std::abs(a - b) <= epsilons * ulp * std::abs(scale);
+}
+Vector rotated(const Vector& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x - s * p.y, s * p.x + c * p.y};
+}
+
+}  // namespace
+
+TEST_CASE("shear: a round pad looks the same from every side", "[shear][law]") {
+  rc::prop("the force turns with the displacement, the moment does not", [] {
+    const Shear shear(normalised(any_map()));
+    const double measure = any_measure(), theta = any_rotation();
+    const auto d = any_shift();
+    const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
+    const auto r = shear(measure, d, theta), t = shear(measure, rotated(d, angle), theta);
+    const auto expected = rotated(r.tangential_force_n, angle);
+    const double size = length(expected);
+    RC_ASSERT(near(t.tangential_force_n.x, expected.x, size, 20));
+    RC_ASSERT(near(t.tangential_force_n.y, expected.y, size, 20));
+    RC_ASSERT(t.moment_n_mm == r.moment_n_mm);
+  });
+  rc::prop("to the bit by quarter turns, mirrors and half turns", [] {
+    const Shear shear(normalised(any_map()));
+    const double measure = any_measure(), theta = any_rotation();
+    const auto d = any_shift();
+    const auto r = shear(measure, d, theta);
+    const auto& f = r.tangential_force_n;
+    const auto quarter = shear(measure, {-d.y, d.x}, theta);
+    RC_ASSERT(quarter.tangential_force_n.x == -f.y && quarter.tangential_force_n.y == f.x);
+    const auto mirror = shear(measure, {d.x, -d.y}, -theta);
+    RC_ASSERT(mirror.tangential_force_n.x == f.x && mirror.tangential_force_n.y == -f.y);
+    RC_ASSERT(mirror.moment_n_mm == -r.moment_n_mm);
+    const auto back = shear(measure, {-d.x, -d.y}, -theta);
+    RC_ASSERT(back.tangential_force_n.x == -f.x && back.tangential_force_n.y == -f.y);
+    RC_ASSERT(back.moment_n_mm == -r.moment_n_mm && back.status == r.status);
+  });
+  rc::prop("the force points where the pad is carried", [] {
+    const Shear shear(normalised(any_map()));
+    const auto d = any_shift();
+    const double theta = any_rotation();
+    const auto r = shear(any_measure(), d, theta);
+    const auto& f = r.tangential_force_n;
+    RC_ASSERT(near(d.x * f.y, d.y * f.x, length(d) * length(f), 10));
+    RC_ASSERT(d.x * f.x + d.y * f.y > 0);
+    RC_ASSERT(theta * r.moment_n_mm > 0);
+  });
+}
+
+TEST_CASE("shear: a pad that stiffens", "[shear][law]") {
+  rc::prop("pulls harder the further it is carried, and by a larger contact", [] {
+    const Shear shear(normalised(any_map()));
+    const double measure = any_measure(), theta = any_rotation();
+    const auto d = any_shift();
+    const double more = 1 + test::log_uniform(1e-9, 10);
+    const auto small = shear(measure, d, theta);
+    for (const auto& large : {shear(measure, {more * d.x, more * d.y}, more * theta),
+                              shear(more * measure, d, theta)}) {
+      RC_ASSERT(length(large.tangential_force_n) > length(small.tangential_force_n));
+      RC_ASSERT(std::abs(large.moment_n_mm) > std::abs(small.moment_n_mm));
+    }
+  });
+  rc::prop("goes on without a jump or a kink at the end of the range, then straight", [] {
+    const auto map = any_map();
+    const Shear shear(map);
+    const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
+    const auto force = [&](double size) {
+      return length(shear(1.0, rotated({size, 0}, angle), 0).tangential_force_n);
+    };
+    const auto moment = [&](double size) { return shear(1.0, {0, 0}, size).moment_n_mm; };
+    const auto smooth = [](const auto& f, double to) {
+      const double h = 1e-5 * to;
+      const double below = (f(to) - f(to - h)) / h, above = (f(to + h) - f(to)) / h;
+      const double step = (f(to * (1 + 4 * ulp)) - f(to * (1 - 4 * ulp)));
+      return std::abs(above - below) < 2e-4 * above && std::abs(step) < 100 * ulp * f(to);
+    };
+    RC_ASSERT(smooth(force, map.force.to));
+    RC_ASSERT(smooth(moment, map.moment.to));
+    const auto slope = [&](double share) {
+      const double a = share * map.force.to, b = 1.5 * a;
+      return (force(b) - force(a)) / (b - a);
+    };
+    const double first = slope(1.001);
+    RC_ASSERT(near(slope(test::uniform(1.01, 100)), first, first, 2e4));
+  });
+  rc::prop("lets go without a jump where its contact vanishes", [] {
+    const Shear shear(normalised(any_map(2)));
+    const auto d = any_shift();
+    const double theta = any_rotation();
+    const auto gone = shear(0.0, d, theta);
+    RC_ASSERT(length(gone.tangential_force_n) == 0 && gone.moment_n_mm == 0);
+    double force = length(shear(1.0, d, theta).tangential_force_n);
+    double moment = std::abs(shear(1.0, d, theta).moment_n_mm);
+    for (double measure = 0.1; measure > 1e-60; measure *= 0.1) {
+      const auto r = shear(measure, d, theta);
+      // the exponents are at least 0.2, and the odd polynomials at least linear
+      RC_ASSERT(length(r.tangential_force_n) < 0.64 * force);
+      RC_ASSERT(std::abs(r.moment_n_mm) < 0.64 * moment);
+      force = length(r.tangential_force_n);
+      moment = std::abs(r.moment_n_mm);
+    }
+    RC_ASSERT(force < 1e-6 && moment < 1e-6);
+  });
+}
+
+TEST_CASE("shear: linear maps", "[shear][law]") {
+  rc::prop("forces of two shifts add, of any linear map; offsets add to it", [] {
+    ShearMap<> map = normalised(any_linear());
+    const Shear shear(map);
+    const double measure = any_measure(), s = test::uniform(-5, 5);
+    const double theta = any_rotation(), eta = any_rotation();
+    const auto d = any_shift(), e = any_shift();
+    const auto a = shear(measure, d, theta), b = shear(measure, e, eta);
+    const auto both = shear(measure, {d.x + s * e.x, d.y + s * e.y}, theta + s * eta);
+    const double factor = shear_factor(measure, map.reference, map.force.exponent);
+    const double scale = 20 * factor * (length(d) + std::abs(s) * length(e));
+    const auto &fa = a.tangential_force_n, &fb = b.tangential_force_n;
+    RC_ASSERT(near(both.tangential_force_n.x, fa.x + s * fb.x, scale, 10));
+    RC_ASSERT(near(both.tangential_force_n.y, fa.y + s * fb.y, scale, 10));
+    RC_ASSERT(near(both.moment_n_mm, a.moment_n_mm + s * b.moment_n_mm,
+                   std::abs(a.moment_n_mm) + std::abs(s * b.moment_n_mm), 10));
+    map.offset_n = {test::uniform(-3, 3), test::uniform(-3, 3)};
+    const auto with = Shear(map)(measure, d, theta);
+    RC_ASSERT(with.tangential_force_n.x == fa.x + map.offset_n.x);
+    RC_ASSERT(with.tangential_force_n.y == fa.y + map.offset_n.y);
+  });
+}
+
+TEST_CASE("shear: the normalisation", "[shear][law]") {
+  rc::prop("does not depend on the unit of the measure", [] {
+    auto map = normalised(any_map(2));
+    const double measure = any_measure(), theta = any_rotation();
+    const auto d = any_shift();
+    const auto a = Shear(map)(measure, d, theta);
+    const double unit = std::ldexp(1.0, static_cast<int>(test::whole(-40, 40)));
+    map.reference *= unit;
+    const auto b = Shear(map)(unit * measure, d, theta);
+    RC_ASSERT(a.tangential_force_n.x == b.tangential_force_n.x);
+    RC_ASSERT(a.moment_n_mm == b.moment_n_mm);
+  });
+  rc::prop("is a power: a size so many times as large counts so many times more, anywhere", [] {
+    ShearMap<> map = ones(any_measure());
+    const double theta = any_rotation();
+    const auto d = any_shift();
+    // half and whole exponents, whose powers of 4 are exact
+    map.force.exponent = static_cast<double>(test::whole(0, 6)) / 2;
+    map.moment.exponent = static_cast<double>(test::whole(0, 6)) / 2;
+    const Shear shear(map);
+    // at the reference size nothing changes
+    RC_ASSERT(shear(map.reference, d, theta).tangential_force_n.x == d.x);
+    RC_ASSERT(shear(map.reference, d, theta).moment_n_mm == theta);
+    // 4 times the size gives a factor of 2 to twice the exponent
+    const double measure = any_measure();
+    const auto small = shear(measure, d, theta), large = shear(4 * measure, d, theta);
+    const double by_d = std::ldexp(1.0, static_cast<int>(2 * map.force.exponent));
+    const double by_t = std::ldexp(1.0, static_cast<int>(2 * map.moment.exponent));
+    const double x = by_d * small.tangential_force_n.x, m = by_t * small.moment_n_mm;
+    RC_ASSERT(near(large.tangential_force_n.x, x, x, 100));
+    RC_ASSERT(near(large.moment_n_mm, m, m, 100));
+  });
+  rc::prop("is all that a map sees of the size", [] {
+    const auto plain = any_map(3), map = normalised(plain);
+    const double measure = any_measure(), theta = any_rotation();
+    const auto d = any_shift();
+    const auto r = Shear(map)(measure, d, theta);
+    const double by_d = shear_factor(measure, map.reference, map.force.exponent);
+    const double by_t = shear_factor(measure, map.reference, map.moment.exponent);
+    const auto alone = Shear(plain)(1.0, by_d * d, by_t * theta);
+    RC_ASSERT(alone.tangential_force_n.x == r.tangential_force_n.x);
+    RC_ASSERT(alone.tangential_force_n.y == r.tangential_force_n.y);
+    RC_ASSERT(alone.moment_n_mm == r.moment_n_mm);
+    RC_ASSERT(alone.status == ForceStatus::implausible || r.status == ForceStatus::below_range ||
+              alone.status == r.status);
+  });
+}
+
+TEST_CASE("shear: moments about other points", "[shear][law]") {
+  // a force along y at x = 3 mm rotates from x toward y
+  CHECK(moment_about_origin(0.0, {0.0, 2.0}, {3.0, 0.0}) == 6);
+  CHECK(moment_about_origin(0.0, {2.0, 0.0}, {0.0, 3.0}) == -6);
+  CHECK(moment_about_origin(5.0, {2.0, 1.0}, {4.0, 2.0}) == 5);  // in line with the origin
+  rc::prop(
+      "the force adds its cross product, and it does not matter over which points one goes", [] {
+        const auto any = [] { return Vector{test::uniform(-20, 20), test::uniform(-20, 20)}; };
+        const auto force = any(), center = any(), stop = any();
+        const double moment = test::uniform(-100, 100);
+        const Eigen::Vector3d f(force.x, force.y, test::uniform(-9, 0)), c(center.x, center.y, 0);
+        const double at_origin = moment_about_origin(moment, force, center);
+        RC_ASSERT(near(at_origin, moment + c.cross(f).z(), 1000, 2));
+        const double there =
+            moment_about_origin(moment, force, Vector{center.x - stop.x, center.y - stop.y});
+        RC_ASSERT(near(moment_about_origin(there, force, stop), at_origin, 1000, 8));
+      });
+}
+
+TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is worth",
+                   "[shear][law]",
+                   double,
+                   float) {
+  using S = TestType;
+  const auto any_number = [] {
+    using Limits = std::numeric_limits<S>;
+    const S odd[] = {S(0),
+                     S(-0.0),
+                     Limits::denorm_min(),
+                     -Limits::denorm_min(),
+                     Limits::infinity(),
+                     -Limits::infinity(),
+                     Limits::quiet_NaN(),
+                     S(1e6),
+                     S(-1e6),
+                     S(1),
+                     S(-1)};
+    const auto k = test::whole(0, 19);
+    return k < 11 ? odd[k] : static_cast<S>(test::uniform(-10, 10));
+  };
+  rc::prop("finite where there is one, 0 without contact, else NaN", [=] {
+    ShearMap<S> map = any_map<S>(3);
+    map.reference = S(100), map.force.exponent = S(0.65), map.moment.exponent = S(1.7);
+    const Shear shear(map);
+    const S measure = any_number(), theta = any_number();
+    const Point2<S> d{any_number(), any_number()};
+    const auto r = shear(measure, d, theta);
+    const auto& f = r.tangential_force_n;
+    const bool known = is_finite(measure);
+    RC_ASSERT(r.has_force() == (known && is_finite(d)));
+    RC_ASSERT(r.has_moment() == (known && is_finite(theta)));
+    RC_ASSERT((r.status == ForceStatus::not_finite) == !(r.has_force() && r.has_moment()));
+    RC_ASSERT((r.has_force() || (f.x != f.x && f.y != f.y)));
+    RC_ASSERT((r.has_moment() || r.moment_n_mm != r.moment_n_mm));
+    const bool gone = known && !(measure > 0);
+    RC_ASSERT((r.status == ForceStatus::no_contact) == (gone && r.has_force() && r.has_moment()));
+    RC_ASSERT(!gone || !r.has_force() || (f.x == 0 && f.y == 0));
+    RC_ASSERT(!gone || !r.has_moment() || r.moment_n_mm == 0);
+  });
+}
