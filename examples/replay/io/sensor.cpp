@@ -168,9 +168,8 @@ fingerpad::ForceCurve<> read_normal_force(const Section& force,
   curve.coefficients = section.numbers<fingerpad::ForceCurve<>::size>("coefficients");
   curve.from = section.number("from_" + unit);
   curve.to = section.number("to_" + unit);
-  if (needs_residual || section.has("residual_n") || section.has("covariance")) {
-    curve.residual_sd_n = section.positive("residual_n");
-  }
+  const bool has_residual = section.has("residual_n") || section.has("covariance");
+  curve.residual_sd_n = needs_residual || has_residual ? section.positive("residual_n") : 0;
   if (section.has("covariance")) {
     const auto rows = section.square("covariance", section.at("coefficients").size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
