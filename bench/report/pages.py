@@ -34,6 +34,7 @@ METHODS = {
     "contact_slide": ("Contact slide", []),
     "grip_control": ("Grip control", ["closed loop"]),
     "wrench": ("Six-axis force", ["72 side dots"]),
+    "membrane_wrench": ("Six axes from dots in the picture", ["frame of 250 dots"]),
     "traction": ("Traction", ["frame of 21x21 dots"]),
     "normal_force": ("Normal force", ["one frame, double"]),
     "contact_shift": ("Shift of the contact", ["noise only", "stuck dots"]),

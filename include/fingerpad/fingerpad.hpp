@@ -30,6 +30,9 @@
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/rim_pull.hpp"
 #include "fingerpad/force/traction.hpp"
+#include "fingerpad/membrane/annulus.hpp"
+#include "fingerpad/membrane/free_pad.hpp"
+#include "fingerpad/membrane/rubber.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/camera.hpp"
@@ -50,6 +53,7 @@
 
 #if __has_include(<Eigen/Core>)
 #include "fingerpad/calibrate/look_up.hpp"
+#include "fingerpad/force/membrane_wrench.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"

@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-VOCABULARY = ["core", "math", "optics", "image"]  # each may include those before it
+VOCABULARY = ["core", "math", "optics", "image", "membrane"]  # each may include those before it
 SUBJECTS = ["depth", "contact", "motion", "slip", "gel", "force", "foam"]
 ABOVE = {  # folders above the subjects, and what else they may include
     "calibrate": [],

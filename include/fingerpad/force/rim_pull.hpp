@@ -14,24 +14,10 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// Pull of Mooney-Rivlin rubber across the direction of `other`, per mu t and stress-free length:
-/// dW/d(along). `along` and `other` are derivatives of the position along two directions that are
-/// perpendicular unit vectors without stress; `mooney_share` is m = C2 / (C1 + C2), 0:
-/// neo-Hookean. With J^2 = |along x other|^2,
-///   W / (mu t) = (1 - m) / 2 (|along|^2 + |other|^2 + J^-2 - 3)
-///              + m / 2 ((|along|^2 + |other|^2) J^-2 + J^2 - 3).
-template <scalar S>
-Point3<S> rubber_pull(const Point3<S>& along, const Point3<S>& other, const S& mooney_share) {
-  const S a = squared_norm(along), b = squared_norm(other), c = dot(along, other);
-  const S inverse = S(1) / (a * b - c * c);
-  const S neo_hookean = S(1) - mooney_share;
-  const S by_area = mooney_share - (neo_hookean + mooney_share * (a + b)) * inverse * inverse;
-  return (neo_hookean + mooney_share * inverse) * along + by_area * (b * along - c * other);
-}
 
 /// Numbers of side dots with a defect.
 struct SideDotFaults {

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The pad that nothing touches: a cap of rubber, spherical without stress, held at its rim and
+// inflated.
+#include <cmath>
+#include <optional>
+
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/scalar.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+
+/// The membrane without stress: a spherical cap of one rubber.
+template <scalar S = double>
+struct StressFreeCap {
+  S base_radius_mm = S(20);  ///< of the rim, > 0
+  S height_mm = S(11);       ///< of its apex, > 0
+  S mooney_share = S(0);     ///< C2 / (C1 + C2), in [0, 0.9]; 0: neo-Hookean
+
+  S radius_mm() const {
+    return (base_radius_mm * base_radius_mm + height_mm * height_mm) / (S(2) * height_mm);
+  }
+  /// From the rim to the apex.
+  S arc_mm() const {
+    using std::atan;
+    return S(2) * radius_mm() * atan(height_mm / base_radius_mm);
+  }
+  /// Distance from the axis at `arc_mm` from the rim.
+  S rho_mm(const S& arc) const {
+    using std::sin;
+    return radius_mm() * sin((arc_mm() - arc) / radius_mm());
+  }
+};
+
+/// Says which value is out of range; "" if none is.
+template <scalar S>
+std::string check(const StressFreeCap<S>& cap) {
+  return check("StressFreeCap", {{"base_radius_mm", cap.base_radius_mm, positive},
+                                 {"height_mm", cap.height_mm, positive},
+                                 {"mooney_share", cap.mooney_share, within(0, 0.9)}});
+}
+
+/// How the membrane of a free pad leaves its rim.
+template <scalar S>
+struct FreeRim {
+  S slope_rad;  ///< of the meridian: 0 level, 90 degrees upright
+  S stretch;    ///< along the meridian
+  S apex_mm;    ///< height of the apex above the rim's level
+};
+
+/// Shoots from the apex. S is the arc from it, rho and r are the radii without and with stress, and
+/// lambda_2 = r / rho. The tensions per mu t are
+///   T_1 = (lambda_1 / lambda_2 - (lambda_1 lambda_2)^-3) (1 - m + m lambda_2^2),
+/// and T_2 with 1 and 2 exchanged. The balance of the part inside r gives T_1 = q r / (2 sin(phi))
+/// with q = p / (mu t). The profile follows from r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi),
+///   phi' = lambda_1 (q - T_2 sin(phi) / r) / T_1.
+template <scalar S>
+class FreePad {
+ public:
+  explicit FreePad(const StressFreeCap<S>& cap) : cap_(cap) {
+    require(cap);
+    bend_mm_ = cap.radius_mm();
+    arc_mm_ = cap.arc_mm();
+  }
+
+  /// The rim under p / (mu t) = `load_per_mm` > 0, where the membrane begins `offset_mm` outward of
+  /// the rim along its normal. Empty if there is no equilibrium with a stretch of the apex below 2.
+  std::optional<FreeRim<S>> rim(const S& load_per_mm, const S& offset_mm = S(0)) const {
+    using std::cos;
+    using std::sin;
+    const auto miss = [&](const S& stretch) {
+      const Place at = profile(stretch, load_per_mm);
+      return S(at.r - cap_.base_radius_mm - offset_mm * sin(at.phi));
+    };
+    const auto misses = [&](double stretch) {
+      return static_cast<double>(value(miss(S(stretch))));
+    };
+    double low = 1.001, high = 2;
+    if (!(misses(low) < 0) || !(misses(high) > 0)) {
+      return {};
+    }
+    for (int k = 0; k < 40; ++k) {
+      const double middle = (low + high) / 2;
+      (misses(middle) < 0 ? low : high) = middle;
+    }
+    // the last steps are in S, so that derivatives are right, too
+    const double step = 1e-5 * (low - 1);
+    const S slope = S((misses(low + step) - misses(low - step)) / (2 * step));
+    S stretch = S(low);
+    for (int k = 0; k < 8; ++k) {
+      const S change = miss(stretch) / slope;
+      stretch = stretch - change;
+      if (value(change * change) < square(epsilon<S>())) {
+        break;
+      }
+    }
+    const Place at = profile(stretch, load_per_mm);
+    const S hoop = at.r / cap_.rho_mm(S(0));
+    const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop);
+    return FreeRim<S>{at.phi, along, offset_mm * cos(at.phi) - at.z};
+  }
+
+ private:
+  struct Place {
+    S r, z, phi;
+  };
+
+  Place change(const S& arc, const Place& at, const S& q) const {
+    using std::cos;
+    using std::sin;
+    const S m = cap_.mooney_share;
+    const S sine = sin(at.phi);
+    const S hoop = at.r / (bend_mm_ * sin(arc / bend_mm_));
+    const S t1 = q * at.r / (S(2) * sine);
+    const S x = stretch_of(t1, hoop);
+    const S area_cubed = x * hoop * x * hoop * x * hoop;
+    const S t2 = (hoop / x - S(1) / area_cubed) * (S(1) - m + m * x * x);
+    return {x * cos(at.phi), -x * sine, x * (q - t2 * sine / at.r) / t1};
+  }
+
+  /// lambda_1 for a tension, from lambda - k lambda^-3 = c by Newton's method. The left side rises
+  /// and is concave, so the iteration converges from below.
+  S stretch_of(const S& t1, const S& hoop) const {
+    const S m = cap_.mooney_share;
+    const S k = S(1) / (hoop * hoop);
+    const S c = t1 * hoop / (S(1) - m + m * hoop * hoop);
+    S x = S(1);
+    for (int step = 0; step < 8; ++step) {
+      const S cubed = k / (x * x * x);
+      x = x - (x - cubed - c) / (S(1) + S(3) * cubed / x);
+    }
+    return x;
+  }
+
+  /// State at the rim, by the Runge-Kutta method from the apex at (0, 0). r = 0 if the cap closes
+  /// before the rim.
+  Place profile(const S& apex_stretch, const S& q) const {
+    const S l = apex_stretch, l_sq = l * l, m = cap_.mooney_share;
+    const S tension = (S(1) - S(1) / (l_sq * l_sq * l_sq)) * (S(1) - m + m * l_sq);
+    constexpr int steps = 60;
+    S arc = arc_mm_ / S(2000);
+    const S step = (arc_mm_ - arc) / S(steps);
+    const S bend = l * q / (S(2) * tension);
+    Place at = {l * arc, -bend * l * arc * arc / S(2), bend * arc};
+    const auto moved = [](const Place& from, const S& by, const Place& d) {
+      return Place{from.r + by * d.r, from.z + by * d.z, from.phi + by * d.phi};
+    };
+    for (int k = 0; k < steps; ++k) {
+      const S half = step / S(2);
+      const Place a = change(arc, at, q);
+      const Place b = change(arc + half, moved(at, half, a), q);
+      const Place c = change(arc + half, moved(at, half, b), q);
+      const Place d = change(arc + step, moved(at, step, c), q);
+      const Place sum = moved(moved(moved(a, S(2), b), S(2), c), S(1), d);
+      at = moved(at, step / S(6), sum);
+      arc = arc + step;
+      if (!(value(at.phi) < 3) || !(value(at.r) > 0)) {
+        return {S(0), S(0), S(0)};
+      }
+    }
+    return at;
+  }
+
+  StressFreeCap<S> cap_;
+  S bend_mm_ = S(0), arc_mm_ = S(0);
+};
+
+}  // namespace v0
+}  // namespace fingerpad
