@@ -429,11 +429,15 @@ TEST_CASE("taxel features: a finger of several arrays is a list of taxels with p
   CHECK(sample.center_x_mm == Approx(9 * 10 / 39.0));
   CHECK(sample.center_y_mm == Approx(9 * 6 / 39.0));
   CHECK(sample.left_out == 0);
+  std::vector<Point2<double>> bad = places;
+  bad[3].y = test::nan;
+  CHECK(test::refusal([&] { TaxelFeatures<>(7, 1, options(), {}, bad); }) ==
+        "TaxelFeatures: places_mm.y = nan, must be finite");
   const std::vector<double> noise(4, 1);
   CHECK(test::refusal([&] { TaxelFeatures<>(7, 1, options(), noise, places); }) ==
-        "TaxelFeatures: noise.size() = 4, must be 0 or rows * cols");
+        "TaxelFeatures: size of noise or places_mm = 4, must be 0 or rows * cols");
   CHECK(test::refusal([&] { TaxelFeatures<>(2, 2, options(), noise, places); }) ==
-        "TaxelFeatures: places_mm.size() = 7, must be 0 or rows * cols");
+        "TaxelFeatures: size of noise or places_mm = 7, must be 0 or rows * cols");
 }
 
 TEST_CASE("taxel features: arrays that say nothing", "[taxel_features]") {

@@ -94,89 +94,74 @@ bool has_moved(const FingerSample<S>& a, const FingerSample<S>& b, const Preslip
          (differ(a.center_x_mm, b.center_x_mm) || differ(a.center_y_mm, b.center_y_mm));
 }
 
-/// Whether the taxels of two vibrations include two different ones.
-template <class Vibration>
-bool at_another(const Vibration& a, const Vibration& b) {
-  return a.is_several || b.is_several || a.location != b.location;
-}
-
-/// On all fingers, a taxel vibrates with as many waves as another taxel, of this or another finger,
-/// did in an older sample.
-template <class Fingers>
-bool grasp_optimise(const Fingers& older, const Fingers& later, const PreslipOptions& options) {
-  const auto is_alike = [&](std::size_t f) {
-    for (std::size_t g = 0; g < older.size(); ++g) {
-      for (const auto& a : older[g].judged()) {
-        for (const auto& b : later[f].judged()) {
-          if (a.waves == b.waves && b.waves >= options.min_waves && (g != f || at_another(a, b))) {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
-  };
-  for (std::size_t f = 0; f < later.size(); ++f) {
-    if (!is_alike(f)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// On any finger, the centroid of force has moved, and a taxel vibrates with more waves than
-/// another taxel did before, or none did.
-template <class Fingers>
-bool grasp_lift(const Fingers& older, const Fingers& later, const PreslipOptions& options) {
-  for (std::size_t f = 0; f < later.size(); ++f) {
-    if (!older[f].can_tell() || !has_moved(older[f], later[f], options)) {
-      continue;
-    }
-    for (const auto& b : later[f].judged()) {
-      bool has_risen = older[f].vibration_count == 0;
-      for (const auto& a : older[f].judged()) {
-        has_risen = has_risen || (a.waves < b.waves && at_another(a, b));
-      }
-      if (has_risen && b.waves > 0 && b.waves >= options.min_waves) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 /// Whether a finger has a vibrating location.
 template <scalar S>
 bool vibrates(const FingerSample<S>& sample) {
   return sample.can_tell() && sample.location >= 0;
 }
 
-/// On all fingers another location vibrates, with the same number of waves.
-template <class Fingers>
-bool printed_grasp_optimise(const Fingers& older,
-                            const Fingers& later,
-                            const PreslipOptions& options) {
-  bool on_all = true;
-  for (std::size_t f = 0; f < later.size(); ++f) {
-    const auto &a = older[f], &b = later[f];
-    on_all = on_all && vibrates(a) && vibrates(b) && a.location != b.location &&
-             a.waves == b.waves && b.waves >= options.min_waves;
-  }
-  return on_all;
+/// Whether the taxels of two vibrations include two different ones.
+template <class Vibration>
+bool at_another(const Vibration& a, const Vibration& b) {
+  return a.is_several || b.is_several || a.location != b.location;
 }
 
-/// On any finger the centroid of force has moved and another location vibrates, with more waves. An
-/// older sample without vibration has no location, which differs from every location.
-template <class Fingers>
-bool printed_grasp_lift(const Fingers& older, const Fingers& later, const PreslipOptions& options) {
-  bool on_any = false;
-  for (std::size_t f = 0; f < later.size(); ++f) {
-    const auto &a = older[f], &b = later[f];
-    on_any =
-        on_any || (a.can_tell() && vibrates(b) && has_moved(a, b, options) &&
-                   a.location != b.location && b.waves > a.waves && b.waves >= options.min_waves);
+/// Finger f: a taxel vibrates with as many waves as another taxel, of this or another finger, did.
+template <class Fingers, scalar S>
+bool grasp_optimise(const Fingers& older,
+                    const FingerSample<S>& later,
+                    std::size_t f,
+                    const PreslipOptions& options) {
+  for (std::size_t g = 0; g < older.size(); ++g) {
+    for (const auto& a : older[g].judged()) {
+      for (const auto& b : later.judged()) {
+        if (a.waves == b.waves && b.waves >= options.min_waves && (g != f || at_another(a, b))) {
+          return true;
+        }
+      }
+    }
   }
-  return on_any;
+  return false;
+}
+
+/// The centroid has moved, and a taxel vibrates with more waves than another taxel did, or none
+/// did.
+template <scalar S>
+bool grasp_lift(const FingerSample<S>& older,
+                const FingerSample<S>& later,
+                const PreslipOptions& options) {
+  if (!older.can_tell() || !has_moved(older, later, options)) {
+    return false;
+  }
+  for (const auto& b : later.judged()) {
+    bool has_risen = older.vibration_count == 0;
+    for (const auto& a : older.judged()) {
+      has_risen = has_risen || (a.waves < b.waves && at_another(a, b));
+    }
+    if (has_risen && b.waves > 0 && b.waves >= options.min_waves) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Another location vibrates, with the same number of waves.
+template <scalar S>
+bool printed_grasp_optimise(const FingerSample<S>& a,
+                            const FingerSample<S>& b,
+                            const PreslipOptions& options) {
+  return vibrates(a) && vibrates(b) && a.location != b.location && a.waves == b.waves &&
+         b.waves >= options.min_waves;
+}
+
+/// The centroid has moved and another location vibrates, with more waves. An older sample without
+/// vibration has no location, which differs from every location.
+template <scalar S>
+bool printed_grasp_lift(const FingerSample<S>& a,
+                        const FingerSample<S>& b,
+                        const PreslipOptions& options) {
+  return a.can_tell() && vibrates(b) && has_moved(a, b, options) && a.location != b.location &&
+         b.waves > a.waves && b.waves >= options.min_waves;
 }
 
 }  // namespace detail
@@ -185,17 +170,20 @@ bool printed_grasp_lift(const Fingers& older, const Fingers& later, const Presli
 /// without a history. Both are arrays, vectors or spans of as many FingerSample.
 template <class Fingers>
 bool is_preslip(const Fingers& older, const Fingers& later, const PreslipOptions& options = {}) {
-  switch (options.rule) {
-    case PreslipRule::grasp_lift:
-      return detail::grasp_lift(older, later, options);
-    case PreslipRule::grasp_optimise:
-      return detail::grasp_optimise(older, later, options);
-    case PreslipRule::printed_grasp_lift:
-      return detail::printed_grasp_lift(older, later, options);
-    case PreslipRule::printed_grasp_optimise:
-      return detail::printed_grasp_optimise(older, later, options);
+  const PreslipRule rule = options.rule;
+  const bool on_any = rule == PreslipRule::grasp_lift || rule == PreslipRule::printed_grasp_lift;
+  for (std::size_t f = 0; f < later.size(); ++f) {
+    const auto &a = older[f], &b = later[f];
+    const bool holds = rule == PreslipRule::grasp_lift ? detail::grasp_lift(a, b, options)
+                       : rule == PreslipRule::grasp_optimise
+                           ? detail::grasp_optimise(older, b, f, options)
+                       : on_any ? detail::printed_grasp_lift(a, b, options)
+                                : detail::printed_grasp_optimise(a, b, options);
+    if (holds == on_any) {
+      return on_any;
+    }
   }
-  return false;
+  return !on_any;
 }
 
 /// Applies a rule to the last samples of a hand, which it keeps: copy it to return to this sample

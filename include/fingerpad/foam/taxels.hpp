@@ -202,6 +202,8 @@ class TaxelFeatures {
       const Real sd = noise.empty() ? Real(options.noise) : value(noise[k]);
       taxels_[k].place_mm =
           places_mm.empty() ? Point2<S>{col * pitch_mm, row * pitch_mm} : places_mm[k];
+      require("TaxelFeatures", {{"places_mm.x", taxels_[k].place_mm.x, finite_number},
+                                {"places_mm.y", taxels_[k].place_mm.y, finite_number}});
       taxels_[k].floor = sd >= 0 ? square(Real(options.noise_factor) * sd) : infinite();
     }
   }
@@ -270,19 +272,18 @@ class TaxelFeatures {
                        std::span<const Point2<S>> places_mm) {
     require(options);
     expects_grid_size("TaxelFeatures", rows, cols, 1, options.window);
-    const auto expect_all = [&](const char* name, std::size_t size) {
-      expects(size == 0 || static_cast<Index>(size) == rows * cols, "TaxelFeatures", name, size,
-              "0 or rows * cols");
-    };
-    expect_all("noise.size()", noise.size());
-    expect_all("places_mm.size()", places_mm.size());
+    for (const std::size_t size : {noise.size(), places_mm.size()}) {
+      expects(size == 0 || static_cast<Index>(size) == rows * cols, "TaxelFeatures",
+              "size of noise or places_mm", size, "0 or rows * cols");
+    }
     return rows;
   }
 
   void forget() {
-    samples_ = unchanged_for_ = 0;
+    samples_ = 0;
+    unchanged_for_ = options_.stuck_after;
     typical_ = Real(0);
-    has_changed_ = has_rested_ = false;
+    has_rested_ = false;
     for (Taxel& taxel : taxels_) {
       taxel.reading = S(0);
       taxel.same_for = taxel.bad_for = taxel.returned_for = 0;
@@ -325,7 +326,6 @@ class TaxelFeatures {
     const bool is_same = samples_ > 0 && now == before;
     if (!is_same && samples_ > 0) {
       unchanged_for_ = 0;
-      has_changed_ = true;
     }
     taxel.same_for = is_same ? taxel.same_for + 1 : 0;
     taxel.bad_for = (std::max)(taxel.bad_for - 1, Index(0));
@@ -366,8 +366,7 @@ class TaxelFeatures {
     const Index gaps =
         std::count_if(clock_.begin() + 1, clock_.end(), [](const Instant& t) { return t.is_gap; });
     const bool none_counts = sample.left_out == static_cast<Index>(taxels_.size());
-    const bool none_changes =
-        options_.stuck_after > 0 && (!has_changed_ || unchanged_for_ >= options_.stuck_after);
+    const bool none_changes = options_.stuck_after > 0 && unchanged_for_ >= options_.stuck_after;
     if (unfilled_for_ > 2 * options_.window || 2 * gaps > options_.window) {
       sample.status = TaxelStatus::clock_jumps;
     } else if (none_counts && sample.frozen == 0) {
@@ -444,11 +443,10 @@ class TaxelFeatures {
   std::vector<S> variances_;    // of each taxel about its line; 0: it does not vibrate
   std::vector<S> residuals_;    // of one taxel
   Index samples_ = 0;
-  Index unfilled_for_ = 0;    // samples since the window was last full
-  Index unchanged_for_ = 0;   // samples since any reading changed
-  Real typical_ = Real(0);    // mean reading of the taxels that press, in the last sample
-  bool has_changed_ = false;  // since the start or the last new clock
-  bool has_rested_ = false;
+  Index unfilled_for_ = 0;   // samples since the window was last full
+  Index unchanged_for_ = 0;  // samples since any reading changed; stuck_after: none ever has
+  Real typical_ = Real(0);   // mean reading of the taxels that press, in the last sample
+  bool has_rested_ = false;  // a window was quiet since the start or the last new clock
 };
 
 }  // namespace v0

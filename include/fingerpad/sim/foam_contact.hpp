@@ -196,14 +196,6 @@ struct SlipDrag {
   S frame_mm = S(0);            ///< x_ie; 0 in eq. 7
 };
 
-template <scalar S>
-std::string check(const SlipDrag<S>& drag) {
-  return check("SlipDrag", {{"damping_n_s_per_mm", drag.damping_n_s_per_mm, not_negative},
-                            {"stiffness_n_per_mm", drag.stiffness_n_per_mm, not_negative},
-                            {"speed_mm_per_s", drag.speed_mm_per_s, finite_number},
-                            {"frame_mm", drag.frame_mm, finite_number}});
-}
-
 /// c_a H - k_a x_ie + k_a H t: the drag without friction, with A and B as in eq. 10.
 template <scalar S>
 RampLoad<S> drag_load(const SlipDrag<S>& drag) {
@@ -226,7 +218,7 @@ RampLoad<S> slip_load(const SlipDrag<S>& drag,
 /// z^2 / (2p K^3), D is 1 mm / K^3, A + B t is drag_load().
 template <scalar S = double>
 struct LiftLoad {
-  S middle = S(2);               ///< C >= |D|, otherwise friction would pull
+  S middle = S(2);               ///< C; where C + D sin(a t) < 0, nothing is pressed and drags
   S swing = S(1);                ///< D
   S frequency_rad_per_s = S(1);  ///< a
   RampLoad<S> drag = {S(1), S(1)};
@@ -237,36 +229,6 @@ struct LiftLoad {
     return detail::positive_power(pressed, S(1) / S(3)) * drag(time_s);
   }
 };
-
-template <scalar S>
-std::string check(const LiftLoad<S>& load) {
-  const double size = std::fabs(static_cast<double>(value(load.swing)));
-  return check("LiftLoad", {{"swing", load.swing, finite_number},
-                            {"middle", load.middle, at_least(size)},
-                            {"frequency_rad_per_s", load.frequency_rad_per_s, finite_number},
-                            {"drag.start_n", load.drag.start_n, finite_number},
-                            {"drag.rise_n_per_s", load.drag.rise_n_per_s, finite_number}});
-}
-
-/// The paper's "composition model" of foam that creeps: a Maxwell element, which flows without
-/// limit, in series with a Kelvin-Voigt element, whose elasticity is delayed. An element that is
-/// left out has an infinite modulus and viscosity. All > 0; the paper prints no values.
-template <scalar S = double>
-struct Burgers {
-  S maxwell_modulus_mpa = S(1);           ///< instantaneous elasticity
-  S maxwell_viscosity_mpa_s = S(1);       ///< viscous flow
-  S kelvin_voigt_modulus_mpa = S(1);      ///< delayed elasticity
-  S kelvin_voigt_viscosity_mpa_s = S(1);  ///< over the modulus: the time of the delay
-};
-
-/// Creep compliance, 1/MPa: the strain per MPa after a constant stress has acted for a time >= 0.
-template <scalar S>
-S creep_compliance(const Burgers<S>& foam, const S& time_s) {
-  using std::expm1;
-  const S delays = foam.kelvin_voigt_modulus_mpa * time_s / foam.kelvin_voigt_viscosity_mpa_s;
-  const S delayed = is_finite(delays) ? -expm1(-delays) / foam.kelvin_voigt_modulus_mpa : S(0);
-  return S(1) / foam.maxwell_modulus_mpa + delayed + time_s / foam.maxwell_viscosity_mpa_s;
-}
 
 }  // namespace v0
 }  // namespace fingerpad
