@@ -166,11 +166,7 @@ bool are_determined(const std::vector<PressedBall<S>>& presses,
   const S least = S((std::max)(1e-12, static_cast<double>(epsilon<S>())));
   bool all = true;
   for (std::size_t j = 0; j < 3 * presses.size() + terms; ++j) {
-    S column_sq = S(0);
-    for (std::size_t i = 0; i <= j; ++i) {
-      column_sq += square(step(i, j));
-    }
-    all = all && square(least) * column_sq < square(step(j, j));
+    all = all && least < step.independent_share(j);
   }
   for (const PressedBall<S>& press : presses) {
     all = all && press.used.size() >= PressedBall<S>::min_pixels;

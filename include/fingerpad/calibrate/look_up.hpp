@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Calibration of the forces by look-up (force/look_up.hpp) from contacts measured with a force
-// gauge. Least squares by the Gauss-Newton method with a QR factorisation of the scaled Jacobian
+// gauge. Least squares by the Gauss-Newton method with a QR factorisation of the Jacobian
 // and, optionally, Huber's weights, with the covariance of the parameters and all residuals.
 // Samples that do not determine a parameter, or that contradict each other, are refused by name
 // (parameter_error). docs/calibrate/calibration.md describes how to take samples. The standard
@@ -20,6 +20,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -28,7 +29,6 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/force/look_up.hpp"
-#include "fingerpad/math/detail/householder_qr.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
@@ -222,24 +222,21 @@ S robust_sd(const FitVector<S>& residuals, Index parameters) {
   return S(1.4826) * *middle * sqrt(S(count / (count - static_cast<double>(parameters))));
 }
 
-/// The Jacobian with rows times the roots of the weights, and columns scaled to length 1. `lengths`
-/// are the original ones.
+/// Of the Jacobian and a column of right sides, with rows times the roots of the weights.
 template <scalar S>
-FitMatrix<S> scaled(const FitMatrix<S>& jacobian,
-                    const FitVector<S>& weights,
-                    FitVector<S>& lengths) {
+Triangle<S> triangle_of(const FitMatrix<S>& jacobian,
+                        const FitVector<S>& right,
+                        const FitVector<S>& weights) {
   using std::sqrt;
-  FitMatrix<S> a = jacobian;
-  for (Index i = 0; i < a.rows(); ++i) {
-    a.row(i) *= sqrt(weights(i));
+  std::vector<S> rows;
+  for (Index i = 0; i < jacobian.rows(); ++i) {
+    const S root = sqrt(weights(i));
+    for (Index k = 0; k < jacobian.cols(); ++k) {
+      rows.push_back(root * jacobian(i, k));
+    }
+    rows.push_back(root * right(i));
   }
-  lengths.resize(a.cols());
-  for (Index k = 0; k < a.cols(); ++k) {
-    const S length_sq = a.col(k).squaredNorm();
-    lengths(k) = S(0) < length_sq ? sqrt(length_sq) : S(1);
-    a.col(k) /= lengths(k);
-  }
-  return a;
+  return {std::move(rows), static_cast<std::size_t>(jacobian.cols() + 1)};
 }
 
 /// Residual, share explained, and covariance of a fit.
@@ -267,13 +264,10 @@ void judge(const FitProblem<S>& of, const FitMatrix<S>& jacobian, ModelFit<S>& f
     const S correction = S(1) + (count - freedom) / count * ((S(1) - share) / share);
     variance = square(correction) * (bounded_sq / freedom) / square(share);
   }
-  FitVector<S> lengths;
-  const FitMatrix<S> a = scaled<S>(jacobian, FitVector<S>::Constant(n, S(1)), lengths);
-  FitMatrix<S> inverse = HouseholderQr<S>(a).inverse_of_r();
-  for (Index k = 0; k < p; ++k) {
-    inverse.row(k) /= lengths(k);
-  }
-  fit.covariance = variance * inverse.lazyProduct(inverse.transpose());
+  const FitVector<S> ones = FitVector<S>::Constant(n, S(1));
+  const std::vector<S> by_unit =
+      triangle_of<S>(jacobian, fit.residuals, ones).covariance(static_cast<std::size_t>(p));
+  fit.covariance = variance * Eigen::Map<const FitMatrix<S>>(by_unit.data(), p, p);
 }
 
 template <scalar S>
@@ -299,7 +293,7 @@ ModelFit<S> fit_model(const FitProblem<S>& of,
   ModelFit<S> fit;
   fit.parameters = start;
   fit.weights = FitVector<S>::Constant(n, S(1));
-  FitVector<S> values(n), lengths;
+  FitVector<S> values(n);
   FitMatrix<S> jacobian(n, p);
   for (int pass = 0; pass < max_passes && !fit.converged; ++pass) {
     of.model(fit.parameters, values, jacobian);
@@ -311,24 +305,20 @@ ModelFit<S> fit_model(const FitProblem<S>& of,
         fit.weights(i) = limit < size ? limit / size : S(1);
       }
     }
-    const HouseholderQr<S> qr(scaled(jacobian, fit.weights, lengths));
-    for (Index k = 0; k < p; ++k) {  // the diagonal of R is the independent share of a column
-      const S share = qr.diagonal(k) < S(0) ? -qr.diagonal(k) : qr.diagonal(k);
-      const std::string name =
-          "information in the samples on " + of.names[static_cast<std::size_t>(k)];
+    const Triangle<S> r = triangle_of<S>(jacobian, fit.residuals, fit.weights);
+    const auto count = static_cast<std::size_t>(p);
+    const std::vector<S> move = r.solve(count, count);
+    S move_sq = S(0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const S share = r.independent_share(k);
+      const std::string name = "information in the samples on " + of.names[k];
       expects(S(min_independence) < share, of.owner, name.c_str(), share,
               "> 1e-5: they are too few, too alike or tied to each other");
-    }
-    FitVector<S> right = fit.residuals;
-    for (Index i = 0; i < n; ++i) {
-      right(i) *= sqrt(fit.weights(i));
-    }
-    const FitVector<S> move = qr.solve(right);
-    for (Index k = 0; k < p; ++k) {
-      fit.parameters(k) += move(k) / lengths(k);
+      fit.parameters(static_cast<Index>(k)) += move[k];
+      move_sq += square(move[k] * r(k, k) / share);
     }
     const S rounding_sq = square(S(64) * S(epsilon<S>())) * of.measured.squaredNorm();
-    fit.converged = pass > 0 && !(rounding_sq < move.squaredNorm());
+    fit.converged = pass > 0 && !(rounding_sq < move_sq);
   }
   of.model(fit.parameters, values, jacobian);
   fit.residuals = of.measured - values;
@@ -754,7 +744,10 @@ ModelFit<S> fit_with_exponent(const FitProblem<S>& of, Index degree, bool given)
     at(degree) = S(-2) + S(k) / S(10);
     of.model(at, values, jacobian);
     const FitMatrix<S> a = jacobian.leftCols(degree);
-    at.head(degree) = HouseholderQr<S>(a).solve(of.measured);
+    const auto count = static_cast<std::size_t>(degree);
+    const std::vector<S> best =
+        triangle_of<S>(a, of.measured, FitVector<S>::Constant(n, S(1))).solve(count, count);
+    std::copy(best.begin(), best.end(), at.begin());
     const FitVector<S> left = of.measured - a.lazyProduct(at.head(degree));
     const S size = of.options.robust ? left.cwiseAbs().sum() : left.squaredNorm();
     if (is_finite(size) && !(value(size) >= value(least))) {

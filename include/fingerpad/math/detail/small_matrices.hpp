@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Symmetric matrices of a few rows, for every scalar: eigenvectors (Jacobi rotations), solution and
-// variances of normal equations (equilibrated Cholesky).
+// Matrices of a few columns, for every scalar: eigenvectors (Jacobi rotations), solution and
+// variances of normal equations (equilibrated Cholesky), least squares by Householder reflections.
+// Eigen's factorisations are blocked, which gains nothing here and takes several times as long to
+// compile.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -237,9 +239,19 @@ class Triangle {
     }
   }
 
-  /// R(i, j) for i <= j. The diagonal is, up to its sign, the length of the part of a column that
-  /// is orthogonal to those before it.
+  /// R(i, j) for i <= j.
   const S& operator()(std::size_t i, std::size_t j) const { return a_[i * cols_ + j]; }
+
+  /// The share of the length of column j that is orthogonal to the columns before it; 0 for a
+  /// column of zeros.
+  S independent_share(std::size_t j) const {
+    using std::sqrt;
+    S length_sq = S(0);
+    for (std::size_t i = 0; i <= j; ++i) {
+      length_sq += square((*this)(i, j));
+    }
+    return S(0) < length_sq ? sqrt(square((*this)(j, j)) / length_sq) : S(0);
+  }
 
   /// The factors of the first `count` columns whose sum is nearest to column b.
   std::vector<S> solve(std::size_t count, std::size_t b) const {
