@@ -61,20 +61,17 @@ struct Bench {
     });
   }
 
-  template <int Step>
-  void add_samples(const std::string& name) const {
-    using Sampler = FrameSampler<std::uint8_t, Step>;
-    using Samples = Image<typename Sampler::Sample>;
-    const auto reference = sampled(scene.pad.reference<float>(), Step);
+  void add_samples(const std::string& name, int step) const {
+    using Samples = Image<std::uint16_t>;
+    const auto reference = sampled(scene.pad.reference<float>(), step);
     const bench::Memory memory;
-    const auto sampler = std::make_shared<Sampler>(scene.pad.cols);
     const auto red = std::make_shared<Samples>(reference.rows, reference.cols);
     const auto green = std::make_shared<Samples>(*red);
     const auto estimate = std::make_shared<DepthEstimator<>>(
-        sampled(scene.pad.camera, Step), scene.pad.fluid, reference, DepthOptions{.step = Step});
+        sampled(scene.pad.camera, step), scene.pad.fluid, reference, DepthOptions{.step = step});
     const auto status = std::make_shared<Image<PixelStatus>>(reference.rows, reference.cols);
     add<float>(name, mean_of_samples_mm, memory, [=, this](Image<float>& depth_mm) {
-      (void)sampler->band(0, red->rows(), frame.red(), frame.green(), red->view(), green->view());
+      (void)sample_frame(frame.red(), frame.green(), step, red->view(), green->view());
       return (*estimate)(*red, *green, depth_mm, *status);
     });
   }
@@ -107,7 +104,7 @@ struct Bench {
     add_ours<float>("NoSmoothing + ExponentialFree<>", {.window_px = 1});
     add_ours<float>("BiasFreeMean + ExponentialFree<>");
     add_ours<double>("the default in double");
-    add_samples<3>("samples of 3");
+    add_samples("samples of 3", 3);
     bench::add_streaming(scene.name, scene.pixels());
     add_opencv();
   }

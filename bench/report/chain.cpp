@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 // The whole chain from a frame to all results (pipeline/fingertip.hpp), as JSON: error of each
 // result, time of each stage, time against error by the step of the samples, instructions and
-// cycles where the machine counts them, the distribution of latencies over 10,000 frames, growth
-// with the size of the image, the number of dots and the length of the history, and two threads.
+// cycles where the machine counts them, what a copy costs, the distribution of latencies over
+// 10,000 frames, and growth with the size of the image, the number of dots and the length of the
+// history.
 // Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" only times that many
 // frames.
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "chain/event_counter.hpp"
@@ -59,40 +59,59 @@ class Times {
   std::vector<double> ms_;
 };
 
-/// Records the time of each stage.
-struct Watch {
-  std::array<Times, chain::stage_names.size()> stage;
-  Clock::time_point last = Clock::now();
-
-  void operator()(FingertipStage ended) {
-    const auto now = Clock::now();
-    stage[static_cast<std::size_t>(ended)].add(Milliseconds(now - last).count());
-    last = now;
-  }
-};
-
-template <class Methods, class Options>
-auto chain_of(Options options) {
-  options.contact.places_edge = !std::is_base_of_v<chain::Lean, Methods>;
-  return Fingertip<Methods>(options);
-}
-
-template <class Chain>
-ordered_json stages_of(Chain chain, const chain::PressedFrames& frames, int count) {
-  Watch watch;
+/// Median processor time of a frame.
+double frame_ms(Fingertip fingertip, const chain::PressedFrames& frames, int count) {
   Times whole;
   for (int k = 0; k < count; ++k) {
-    watch.last = Clock::now();
-    const auto begin = watch.last;
-    (void)touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view(), watch);
-    whole.add(Milliseconds(Clock::now() - begin).count());
+    const double begin_ms = thread_ms();
+    (void)touch_of(fingertip, frames[static_cast<std::size_t>(k) % frames.size()].view());
+    whole.add(thread_ms() - begin_ms);
   }
-  ordered_json out;
-  for (std::size_t s = 0; s < chain::stage_names.size(); ++s) {
-    out["stages_ms"][chain::stage_names[s]] = watch.stage[s].median();
+  return whole.median();
+}
+
+/// What each stage adds to the time of a frame.
+ordered_json stages_of(FingertipOptions options, const chain::PressedFrames& frames, int count) {
+  std::array<double, 5> ms;  // of a frame with one stage more each
+  const auto time = [&] { return frame_ms(Fingertip(options), frames, count); };
+  ms[4] = time();
+  options.rim_mm = {};
+  ms[3] = time();
+  options.force_of_area = options.force_of_depth = {};
+  options.shear = {};
+  ms[2] = time();
+  options.free_dots_mm = {};
+  ms[1] = time();
+  options.depth_alone = true;
+  ms[0] = time();
+  return {{"stages_ms",
+           {{"smoothing, depth", ms[0]},
+            {"contact region", ms[1] - ms[0]},
+            {"stick ratio, object motion", ms[2] - ms[1]},
+            {"look-up forces", ms[3] - ms[2]},
+            {"six-axis force", ms[4] - ms[3]}}},
+          {"whole_ms", ms[4]}};
+}
+
+/// What a copy costs, in bytes and in ms: a new one, and one into memory that is there.
+ordered_json copy_of(const FingertipOptions& options, const chain::PressedFrames& frames) {
+  Fingertip original(options);
+  for (std::size_t k = 0; k < 4 * frames.size(); ++k) {
+    (void)touch_of(original, frames[k % frames.size()].view());
   }
-  out["whole_ms"] = whole.median();
-  return out;
+  const long before = test::bytes_taken();
+  Fingertip copy = original;
+  const long bytes = test::bytes_taken() - before;
+  Times anew, again;
+  for (int k = 0; k < 100; ++k) {
+    const double begin_ms = thread_ms();
+    const Fingertip other = original;
+    const double middle_ms = thread_ms();
+    copy = original;
+    anew.add(middle_ms - begin_ms);
+    again.add(thread_ms() - middle_ms);
+  }
+  return {{"bytes", bytes}, {"new_ms", anew.median()}, {"again_ms", again.median()}};
 }
 
 /// Writes {"unit", "median", "99 %", "worst", "found"} of each quantity.
@@ -148,17 +167,17 @@ double displacement_error_mm(const ObjectMotionResult<double>& r,
                     s * x + c * y + b.shift_y_mm - r.position_mm.y);
 }
 
-template <class Chain>
-ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
+ordered_json errors_of(Fingertip chain, const chain::PressedFrames& frames) {
   Errors errors;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto& f = frames[k];
     const auto r = touch_of(chain, f.view());
+    const auto depth_mm = chain.depth_mm();
     for (Index i = 0; i < f.depth_mm.rows(); ++i) {
       for (Index j = 0; j < f.depth_mm.cols(); ++j) {
         if (f.depth_mm(i, j) == f.depth_mm(i, j)) {
           errors.add("depth of a pixel", "mm",
-                     static_cast<double>(chain.depth_mm()(i, j)) - f.depth_mm(i, j));
+                     static_cast<double>(depth_mm(i, j)) - f.depth_mm(i, j));
         }
       }
     }
@@ -183,8 +202,7 @@ ordered_json errors_of(Chain chain, const chain::PressedFrames& frames) {
   return errors.summary();
 }
 
-template <class Chain>
-ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int count) {
+ordered_json latencies_of(Fingertip chain, const chain::PressedFrames& frames, int count) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     (void)touch_of(chain, frames[k].view());
   }
@@ -220,9 +238,9 @@ ordered_json latencies_of(Chain chain, const chain::PressedFrames& frames, int c
 /// Medians of the lean chain's stages over image sizes, dots and stored frames.
 ordered_json growth() {
   ordered_json out = ordered_json::array();
-  const auto add = [&](const char* by, Index size, const auto& options, const auto& frames,
-                       int count) {
-    auto stages = stages_of(chain_of<chain::Lean>(options), frames, count);
+  const auto add = [&](const char* by, Index size, const FingertipOptions& options,
+                       const chain::PressedFrames& frames, int count) {
+    auto stages = stages_of(chain::lean(options), frames, count);
     stages["by"] = by;
     stages["size"] = size;
     out.push_back(stages);
@@ -245,36 +263,28 @@ ordered_json growth() {
 }
 
 /// Time and errors of a chain in samples of Step x Step pixels.
-template <class Methods, int Step, class Options>
-ordered_json in_samples(const char* policies,
-                        const Options& options,
+ordered_json samples_of(const char* policies,
+                        const FingertipOptions& options,
                         const chain::PressedFrames& frames) {
-  using Sampled = chain::InSamples<Methods, Step>;
-  ordered_json out = {{"policies", policies}, {"step", Step}};
-  out["whole_ms"] = stages_of(chain_of<Sampled>(options), frames, 400)["whole_ms"];
-  out["errors"] = errors_of(chain_of<Sampled>(options), frames);
+  ordered_json out = {{"policies", policies}, {"step", options.sampling}};
+  out["whole_ms"] = frame_ms(Fingertip(options), frames, 400);
+  out["errors"] = errors_of(Fingertip(options), frames);
   return out;
 }
 
 /// Medians of the two passes from a frame to depth, alone and in sequence, and of a copy of what
 /// the first leaves for the second: what one pass over the frame could save.
-template <class Methods, class Options>
-ordered_json passes_of(const Options& options, const chain::PressedFrames& frames) {
-  constexpr int step = Methods::sampling;
-  using Sampler = FrameSampler<std::uint8_t, step>;
-  using Samples = test::Image<typename Sampler::Sample>;
+ordered_json passes_of(const FingertipOptions& options, const chain::PressedFrames& frames) {
+  const int step = options.sampling;
+  using Samples = test::Image<std::uint16_t>;
   const auto reference = sampled(options.reference, step);
   DepthEstimator estimate(sampled(options.camera, step), options.fluid, reference,
                           {.window_px = options.smoothing_px, .step = step});
-  Sampler sampler(options.cols);
   test::Image<float> depth_mm(reference.rows, reference.cols);
   test::Image<PixelStatus> status(reference.rows, reference.cols);
   Samples red(reference.rows, reference.cols), green = red, copy = red;
-  const auto view = [](Samples& of) {
-    return StridedView<typename Sampler::Sample>(of.cells.data(), of.rows(), of.cols(), of.cols());
-  };
   const auto sample = [&](const chain::Inputs& in) {
-    (void)sampler.band(0, red.rows(), in.image.red, in.image.green, view(red), view(green));
+    (void)sample_frame(in.red, in.green, step, as_view(red), as_view(green));
   };
   const auto invert = [&] { (void)estimate(red, green, depth_mm, status); };
   const auto median = [&](const auto& pass) {
@@ -300,8 +310,7 @@ ordered_json passes_of(const Options& options, const chain::PressedFrames& frame
 }
 
 /// Instructions and cycles of a frame; null where the machine does not count them.
-template <class Chain>
-ordered_json events_of(Chain chain, const chain::PressedFrames& frames) {
+ordered_json events_of(Fingertip chain, const chain::PressedFrames& frames) {
   const auto a_frame = [&](chain::EventCounter& counter) -> ordered_json {
     constexpr int count = 64;
     const auto before = counter.value();
@@ -323,29 +332,27 @@ int main(int argc, char** argv) {
   const chain::PressedFrames frames;
   const auto options = frames.options();
   ordered_json out;
-  const auto add = [&]<class Methods>(const char* name, const Methods&) {
+  const auto lean = chain::lean(options);
+  const auto add = [&](const char* name, const FingertipOptions& of_chain) {
     const long before = test::bytes_taken();
-    const auto made = chain_of<Methods>(options);
+    const Fingertip made(of_chain);
     auto& of = out["chains"][name];
     of["bytes"] = test::bytes_taken() - before;
-    of.update(stages_of(chain_of<Methods>(options), frames, 400));
-    of["errors"] = errors_of(chain_of<Methods>(options), frames);
-    of["events"] = events_of(chain_of<Methods>(options), frames);
+    of.update(stages_of(of_chain, frames, 400));
+    of["copy"] = copy_of(of_chain, frames);
+    of["errors"] = errors_of(made, frames);
+    of["events"] = events_of(made, frames);
   };
-  add("lean", chain::Lean());
-  add("default", chain::ByDefault());
-  out["samples"] = {in_samples<chain::Lean, 1>("lean", options, frames),
-                    in_samples<chain::Lean, 2>("lean", options, frames),
-                    in_samples<chain::Lean, 4>("lean", options, frames),
-                    in_samples<chain::ByDefault, 1>("default", options, frames),
-                    in_samples<chain::ByDefault, 2>("default", options, frames),
-                    in_samples<chain::ByDefault, 3>("default", options, frames),
-                    in_samples<chain::ByDefault, 4>("default", options, frames)};
-  out["passes_ms"] = {{"lean", passes_of<chain::Lean>(options, frames)},
-                      {"default", passes_of<chain::ByDefault>(options, frames)}};
+  add("lean", lean);
+  add("default", options);
+  for (const int step : {1, 2, 4}) {
+    out["samples"].push_back(samples_of("lean", chain::in_samples(lean, step), frames));
+  }
+  for (const int step : {1, 2, 3, 4}) {
+    out["samples"].push_back(samples_of("default", chain::in_samples(options, step), frames));
+  }
+  out["passes_ms"] = {{"lean", passes_of(lean, frames)}, {"default", passes_of(options, frames)}};
   out["growth"] = growth();
-  const auto one = latencies_of(chain_of<chain::Lean>(options), frames, count);
-  const auto two = latencies_of(chain_of<chain::Shared<chain::Lean>>(options), frames, count);
-  out["latencies"] = {{"one thread", one}, {"two threads", two}};
+  out["latency"] = latencies_of(Fingertip(lean), frames, count);
   std::cout << out.dump(1) << '\n';
 }

@@ -159,21 +159,21 @@ def chain_errors(chains):
     def column(chain):
         errors = [" / ".join(number(e[s]) for s in ("median", "99 %", "worst"))
                   for e in chain["errors"].values()]
-        return errors + [size(chain["bytes"])]
+        return errors + [size(chain["bytes"]),
+                         f"{size(chain['copy']['bytes'])}, {number(chain['copy']['again_ms'], 2)} ms"]
     quantities = [f"{q}, {e['unit']}" for q, e in next(iter(chains.values()))["errors"].items()]
     return table(["median / 99 % / worst", *chains],
-                 zip([*quantities, "memory"], *map(column, chains.values())))
+                 zip([*quantities, "memory", "a copy"], *map(column, chains.values())))
 
 
 def chain_latencies(runs):
-    def row(name, flags, of):
+    def row(flags, of):
         times = [number(of[k], 3) for k in ("median_ms", "99_ms", "999_ms", "worst_ms",
                                             "worst_of_thread_ms")]
-        return [f"{name}, {flags}", *times, f"{of['frames_per_s']:.0f}", str(of["allocations"])]
+        return [flags, *times, f"{of['frames_per_s']:.0f}", str(of["allocations"])]
     return table(["lean chain", "median, ms", "99 %", "99.9 %", "worst", "worst, processor time",
                   "frames a second", "allocations"],
-                 [row(name, flags, of) for flags, run in runs.items()
-                  for name, of in run["latencies"].items()])
+                 [row(flags, run["latency"]) for flags, run in runs.items()])
 
 
 def chain_samples(runs):
@@ -220,7 +220,7 @@ def write_chain(build, docs, about):
     plots.chain_latencies(runs, pictures / "latency.png")
     plots.chain_growth(runs["native"], pictures / "growth.png")
     chains = runs["native"]["chains"]
-    count = next(iter(runs["native"]["latencies"].values()))["frames"]
+    count = runs["native"]["latency"]["frames"]
     (docs / "whole_chain.md").write_text(f"""# The whole chain
 
 A frame in, all results out: 640 x 480 pixels of red and green, two planes of 8 bit, to smoothing,
@@ -235,6 +235,8 @@ Two chains. **default**: the methods by default. **lean**: what a flat contact o
 cannot do without: no placed edge, in samples of 4 x 4 pixels where the other has 3 x 3.
 
 ![Time of each stage](whole_chain/stages.png)
+
+What each stage adds to the time of a frame:
 
 {chain_stages(runs, chains)}
 {chain_events(runs)}
@@ -272,17 +274,10 @@ follow the area.
 
 ## Latency
 
-{count} frames of the lean chain, one after another. Two threads share the rows of the samples, of the depth
-and of the heights in plan, and work on dots and six-axis force side by side. Contact region and object
-motion stay with one thread. Results are the same to the last bit, as they are from run to run
-(`tests/pipeline/fingertip.cpp`). A thread that waits for the other polls for half a millisecond before it
-sleeps (bench/report/chain/crew.hpp): a frame hands work over four times, and to wake a sleeping thread
-takes about as long as the work that is handed over. Two threads gain most where the depth takes long. The
-six-axis force stays with one thread, and nothing else takes as long.
-
-A frame that takes several times the median was interrupted: the core went to another process, or a virtual
-machine's host took it. The processor time is that of the calling thread; the host's share remains in it, and
-with two threads so does the polling.
+{count} frames of the lean chain, one after another, in one thread. Results are the same to the last bit from
+run to run (`tests/pipeline/fingertip.cpp`). A frame that takes several times the median was interrupted: the core
+went to another process, or a virtual machine's host took it. The processor time is that of the thread; the host's
+share remains in it.
 
 ![Share of frames that take longer](whole_chain/latency.png)
 

@@ -173,10 +173,8 @@ def chain_latencies(runs, path):
     """Share of the frames that take longer than a given time, in ms."""
     figure, axes = plt.subplots(figsize=(9, 3.4))
     for flags, run in runs.items():
-        for name, of in run["latencies"].items():
-            ms, n = of["sorted_ms"], len(of["sorted_ms"])
-            axes.plot(ms, [1 - k / n for k in range(n)], label=f"{name}, {flags}",
-                      ls="-" if name == "one thread" else "--")
+        ms = run["latency"]["sorted_ms"]
+        axes.plot(ms, [1 - k / len(ms) for k in range(len(ms))], label=flags)
     logarithmic(axes.xaxis, "x")
     axes.set_yscale("log")
     axes.set_xlabel("latency of a frame, ms")

@@ -85,11 +85,7 @@ const chain::PressedFrames& pressed() {
 }
 
 /// The chain on pressed frames, on noise, and on pressed frames with random dots and side dots.
-template <class Methods>
-std::vector<Kind> of_chain() {
-  auto options = pressed().options();
-  options.contact.places_edge = !std::is_same_v<Methods, chain::Lean>;
-  static Fingertip<Methods> fingertip(options);
+std::vector<Kind> of_chain(Fingertip& fingertip) {
   static const auto frames =
       made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
   const Index side_dots = pressed()[0].side_dots_mm.cols();
@@ -98,19 +94,21 @@ std::vector<Kind> of_chain() {
   static const auto side = made<Image<Point3<double>>>([side_dots](int, test::Random& r) {
     return scattered<Point3<double>>(1, side_dots, -20, 20, r);
   });
-  return {{"a pressed pad", [](int k) { (void)touch_of(fingertip, pressed()[variant(k)].view()); }},
-          {"an image of noise",
-           [](int k) {
-             auto in = pressed()[variant(k)].view();
-             in.image = {as_view(frames[variant(k)].red), as_view(frames[variant(k)].green)};
-             (void)touch_of(fingertip, in);
-           }},
-          {"dots and side dots anywhere", [](int k) {
-             auto in = pressed()[variant(k)].view();
-             in.dots_px = as_view(dots[variant(k)]);
-             in.side_dots_mm = as_view(side[variant(k)]);
-             (void)touch_of(fingertip, in);
-           }}};
+  return {
+      {"a pressed pad", [&](int k) { (void)touch_of(fingertip, pressed()[variant(k)].view()); }},
+      {"an image of noise",
+       [&](int k) {
+         auto in = pressed()[variant(k)].view();
+         in.red = as_view(frames[variant(k)].red);
+         in.green = as_view(frames[variant(k)].green);
+         (void)touch_of(fingertip, in);
+       }},
+      {"dots and side dots anywhere", [&](int k) {
+         auto in = pressed()[variant(k)].view();
+         in.dots_px = as_view(dots[variant(k)]);
+         in.side_dots_mm = as_view(side[variant(k)]);
+         (void)touch_of(fingertip, in);
+       }}};
 }
 
 std::vector<Kind> of_depth() {
@@ -323,8 +321,9 @@ int main(int argc, char** argv) {
         bench::worst_case::row_of(method, kinds, (std::min)(calls, affordable), instructions));
     std::cerr << method << '\n';
   };
-  add("whole chain, lean", of_chain<chain::Lean>());
-  add("whole chain, default", of_chain<chain::ByDefault>());
+  Fingertip lean(chain::lean(pressed().options())), by_default(pressed().options());
+  add("whole chain, lean", of_chain(lean));
+  add("whole chain, default", of_chain(by_default));
   add("depth, every pixel", of_depth());
   add("contact region, every pixel", of_contact_region());
   add("gel contact", of_gel(false));

@@ -76,9 +76,6 @@ constexpr Index dots_across = 21;
 constexpr double dot_pitch_mm = 1.5;
 constexpr double dot_noise_px = 0.06;  ///< of a dot finder
 
-struct Methods : fingerpad::FingertipMethods {
-  static constexpr bool has_look_up = false;
-};
 using Reference = fingerpad::DepthReference<float>;
 using Options = fingerpad::FingertipOptions;
 
@@ -106,7 +103,7 @@ class VirtualPad {
       rim_.at(k) = Rim::border(k);
     }
     expose(0);
-    tip_ = std::make_unique<Tip>(options());
+    tip_ = std::make_unique<fingerpad::Fingertip>(options());
     measure(0);
   }
 
@@ -126,8 +123,6 @@ class VirtualPad {
   const Numbers& numbers() const { return numbers_; }
 
  private:
-  using Tip = fingerpad::Fingertip<Methods>;
-
   void place_dots() {
     const double middle = (dots_across - 1) / 2.0;
     for (Index i = 0; i < dots_across; ++i) {
@@ -208,14 +203,14 @@ class VirtualPad {
   }
 
   void measure(double time_s) {
-    const fingerpad::ColorFrame seen(channel(rgba_, size_px, size_px, 0),
-                                     channel(rgba_, size_px, size_px, 1));
     const fingerpad::StridedView<const Point2<double>> dots(dots_px_.data(), dots_across,
                                                             dots_across, dots_across);
     rim_pull_.pull(membrane_, grip_);
     const fingerpad::StridedView<const Point3<double>> side(rim_pull_.dots.data(), 1, Rim::count,
                                                             Rim::count);
-    const auto touch = (*tip_)(seen, dots, side, membrane_.film.pressure_mpa(), time_s);
+    const auto touch =
+        (*tip_)(channel(rgba_, size_px, size_px, 0), channel(rgba_, size_px, size_px, 1), dots,
+                side, membrane_.film.pressure_mpa(), time_s);
     copy_maps();
     tell(touch);
   }
@@ -338,7 +333,7 @@ class VirtualPad {
   Picture<Point3<double>> rim_;
   std::vector<float> edge_;
   Numbers numbers_;
-  std::unique_ptr<Tip> tip_;
+  std::unique_ptr<fingerpad::Fingertip> tip_;
 };
 
 /// A free and a pressed picture of one's own sensor, of which only the free pad's cap is known.
@@ -362,15 +357,13 @@ class OwnPictures {
     const auto free_depth = cap(camera, base_radius_mm, height_mm);
     auto reference = fit_reference(camera, fluid, channel(free_, rows_, cols_, 0),
                                    channel(free_, rows_, cols_, 1), free_depth.view());
-    fingerpad::FingertipOptions o{camera, fluid, std::move(reference), rows_, cols_};
+    fingerpad::FingertipOptions o{camera, fluid, std::move(reference)};
     const double scale = 0.08 / pitch;
     o.smoothing_px = 2 * std::clamp(static_cast<int>(14 * scale), 1, 54) + 1;
     o.contact.ring.radius_px = 25 * scale;
     o.contact.free_apex_mm = height_mm;
-    fingerpad::Fingertip<DepthAndContact> tip(o);
-    const fingerpad::ColorFrame seen(channel(pressed_, rows_, cols_, 0),
-                                     channel(pressed_, rows_, cols_, 1));
-    const auto touch = tip(seen, fingerpad::StridedView<const Point2<double>>(), 0);
+    fingerpad::Fingertip tip(o);
+    const auto touch = tip(channel(pressed_, rows_, cols_, 0), channel(pressed_, rows_, cols_, 1));
     const auto depth = tip.depth_mm();
     const auto mask = tip.contact_mask();
     for (Index i = 0; i < rows_; ++i) {
@@ -392,10 +385,6 @@ class OwnPictures {
   const Numbers& numbers() const { return numbers_; }
 
  private:
-  struct DepthAndContact : fingerpad::FingertipMethods {
-    static constexpr bool has_dots = false, has_look_up = false, has_wrench = false;
-  };
-
   Picture<float> cap(const fingerpad::Camera<double>& camera,
                      double base_radius_mm,
                      double height_mm) const {

@@ -18,10 +18,6 @@ namespace {
 using fingerpad::FingertipResult;
 using fingerpad::SpatialStickTest;
 using Reference = fingerpad::DepthReference<float>;
-/// Depth at every pixel, because Python reads whole arrays.
-struct Methods : fingerpad::FingertipMethods {
-  static constexpr int sampling = 1;
-};
 using Options = fingerpad::FingertipOptions;
 using WrenchOptions = fingerpad::WrenchOptions<double>;
 
@@ -38,13 +34,13 @@ class Fingertip {
                              const Number& time) {
     const double pressure_mpa = number_of(pressure, "pressure_mpa");
     const double time_s = number_of(time, "time_s");
-    const fingerpad::ColorFrame frame(view_of<std::uint8_t>(red, "red"),
-                                      view_of<std::uint8_t>(green, "green"));
+    const auto red_view = view_of<std::uint8_t>(red, "red");
+    const auto green_view = view_of<std::uint8_t>(green, "green");
     const auto dots = dots_px_of(dots_px, "dots_px");
     const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
     const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
-    return fingertip_(frame, dots, side_dots, pressure_mpa, time_s);
+    return fingertip_(red_view, green_view, dots, side_dots, pressure_mpa, time_s);
   }
 
   /// A copy of the view that `show` returns for the last frame.
@@ -67,7 +63,7 @@ class Fingertip {
   }
 
  private:
-  fingerpad::Fingertip<Methods> fingertip_;
+  fingerpad::Fingertip fingertip_;
   std::mutex mutex_;
 };
 
@@ -85,7 +81,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 bool shear_by_depth,
                                 const Count& smoothing_px,
                                 const Number& dot_radius_px) {
-  Options options{camera, fluid, reference, reference.rows, reference.cols};
+  Options options{camera, fluid, reference};
+  options.sampling = 1;  // depth at every pixel, because Python reads whole arrays
   const Dots dots(free_dots_mm, "free_dots_mm"), rim(rim_mm, "rim_mm");
   options.free_dots_mm = dots.view();
   options.rim_mm = rim.view();
@@ -219,6 +216,13 @@ void bind_result(py::module_& module) {
                      "Result of a frame; see pipeline/fingertip_options.hpp.")
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
+      .def_readonly("depth_in_doubt", &Result::depth_in_doubt,
+                    "depth or free depth is of another pad, light or unit")
+      .def_readonly("contact_in_doubt", &Result::contact_in_doubt)
+      .def_readonly("lacks_motion", &Result::lacks_motion)
+      .def_readonly("lacks_stick_ratio", &Result::lacks_stick_ratio)
+      .def_readonly("lacks_look_up", &Result::lacks_look_up)
+      .def_readonly("lacks_wrench", &Result::lacks_wrench)
       .def_readonly("depth", &Result::depth)
       .def_property_readonly(
           "neighbour_light", [](const Result& r) { return name_of(r.neighbour_light); },

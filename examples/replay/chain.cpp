@@ -15,27 +15,16 @@
 namespace replay {
 namespace {
 
-
 /// Empty for a dots-only recording, which does not need it.
-cv::Mat first_image_of(Recording& recording, const Options& options) {
-  if (recording.sensor.dots_only) {
-    return {};
-  }
-  recording.frames.seek(options.range.first);
-  return next_frame(recording.frames, recording.reference.size());
-}
-
 std::unique_ptr<FingertipStep> fingertip_step_of(Recording& recording,
                                                  const Options& options,
-                                                 const cv::Mat& first_image,
                                                  const DotGrid& initial_px) {
   if (recording.sensor.dots_only) {
     return nullptr;
   }
   const int by_default = recording.sensor.smoothing_px.value_or(1);
   try {
-    return make_fingertip_step(recording, first_image, options.smoothing_px.value_or(by_default),
-                               initial_px);
+    return make_fingertip_step(recording, options.smoothing_px.value_or(by_default), initial_px);
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }
@@ -85,12 +74,9 @@ void describe_depth(const FingertipFrame& result, Scene& scene) {
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
-    : Chain(recording, options, first_image_of(recording, options)) {}
-
-Chain::Chain(Recording& recording, const Options& options, const cv::Mat& first_image)
     : recording_(recording),
       dots_(dots_of(recording, options)),
-      fingertip_(fingertip_step_of(recording, options, first_image, dots_.initial())),
+      fingertip_(fingertip_step_of(recording, options, dots_.initial())),
       stick_(dots_.initial().size(), recording.sensor.stick),
       traction_(traction_step_of(recording, options)) {}
 
@@ -103,11 +89,7 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.force = seen.force;
   scene.wrench = std::move(seen.wrench);
   describe_depth(seen, scene);
-  depth_ms_.push_back(seen.depth_ms);
-  contact_ms_.push_back(seen.contact_ms);
-  if (scene.wrench.present) {
-    wrench_ms_.push_back(seen.wrench_ms);
-  }
+  frame_ms_.push_back(seen.frame_ms);
 }
 
 Scene Chain::operator()(int frame, const cv::Mat& image) {
@@ -132,14 +114,8 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
   return scene;
 }
 
-double Chain::depth_ms() const {
-  return median_of(depth_ms_);
-}
-double Chain::contact_ms() const {
-  return median_of(contact_ms_);
-}
-double Chain::wrench_ms() const {
-  return median_of(wrench_ms_);
+double Chain::frame_ms() const {
+  return median_of(frame_ms_);
 }
 
 }  // namespace replay

@@ -20,17 +20,13 @@ class Chain {
  public:
   /// Sets up all steps; throws Failure.
   Chain(Recording& recording, const Options& options);
-  /// The same for frames from another source, all of the size and type of `first_image`.
-  Chain(Recording& recording, const Options& options, const cv::Mat& first_image);
 
   /// Processes a frame. The maps in the result are newly allocated.
   Scene operator()(int frame, const cv::Mat& image);
 
   const DotSource& dots() const { return dots_; }
-  /// Medians over the frames so far; NaN for a dots-only recording.
-  double depth_ms() const;
-  double contact_ms() const;
-  double wrench_ms() const;
+  /// Median over the frames so far; NaN for a dots-only recording.
+  double frame_ms() const;
 
  private:
   void look(const DotGrid& dots_px, Scene& scene);
@@ -40,9 +36,7 @@ class Chain {
   std::unique_ptr<FingertipStep> fingertip_;  ///< null for a dots-only recording
   StickStep stick_;                           ///< for dots-only recordings
   TractionStep traction_;                     ///< empty if the recording lacks data for it
-  std::vector<double> depth_ms_;
-  std::vector<double> contact_ms_;
-  std::vector<double> wrench_ms_;
+  std::vector<double> frame_ms_;
 };
 
 }  // namespace replay

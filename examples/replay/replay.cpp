@@ -88,7 +88,7 @@ void print_look_up(const Writer& writer, const Recording& recording) {
   }
 }
 
-void print_wrench(const Chain& chain, const Writer& writer, const Recording& recording) {
+void print_wrench(const Writer& writer, const Recording& recording) {
   const std::string lacking = lacking_for_wrench(recording);
   if (!lacking.empty()) {
     std::printf("six-axis     none: %s\n", lacking.c_str());
@@ -104,7 +104,6 @@ void print_wrench(const Chain& chain, const Writer& writer, const Recording& rec
     }
   }
   std::printf("six-axis     in %d frames; maximum %.2f N\n", known, largest_n);
-  std::printf("force step   %.2f ms per frame (median)\n", chain.wrench_ms());
 }
 
 /// Prints the results that need depth.
@@ -130,8 +129,7 @@ void print_depth(const Chain& chain, const Writer& writer) {
   }
   std::printf("max depth    %.2f mm\n", deepest_mm);
   std::printf("contact      in %d frames; maximum %.1f mm^2\n", in_contact, largest_mm2);
-  std::printf("depth step   %.2f ms per frame (median)\n", chain.depth_ms());
-  std::printf("contact step %.2f ms per frame (median)\n", chain.contact_ms());
+  std::printf("fingertip    %.2f ms per frame (median)\n", chain.frame_ms());
 }
 
 /// The most useful reason why no frame has a stick ratio.
@@ -183,7 +181,7 @@ void print_summary(const Chain& chain,
   print_dots(chain, writer);
   if (!dots_only) {
     print_look_up(writer, recording);
-    print_wrench(chain, writer, recording);
+    print_wrench(writer, recording);
   }
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());
   if (options.raw && !dots_only) {

@@ -25,7 +25,7 @@ auto touched(auto& fingertip,
              double pressure_mpa,
              double time_s) {
   return fuzz::frame([&] {
-    return fingertip(ColorFrame(frame.image.red, frame.image.green), frame.dots_px.view(),
+    return fingertip(frame.image.red, frame.image.green, frame.dots_px.view(),
                      as_view(frame.side_dots_mm), pressure_mpa, time_s);
   });
 }
@@ -65,9 +65,8 @@ void require_sound(const Result& touch) {
 
 void try_fingertip(Input& in) {
   static const auto options = frames().options();
-  using Tip = Fingertip<>;
-  static const Tip start(options);
-  static Tip tip = start;
+  static const Fingertip start(options);
+  static Fingertip tip = start;
   tip = start;  // into the memory that is there: to take it anew costs a third of an execution
   double time_s = in.number(0, 10);
   for (Index k = in.whole(1, 4); k > 0; --k) {
@@ -76,7 +75,7 @@ void try_fingertip(Input& in) {
   }
   tip.reset();
   static const auto clean = [] {
-    Tip fresh = start;
+    Fingertip fresh = start;
     return touched(fresh, frames()[0], chain::pressure_mpa, 0);
   }();
   const auto again = touched(tip, frames()[0], chain::pressure_mpa, 0);

@@ -62,15 +62,11 @@ void tell_depth_and_contact(Results& tell) {
   tell("contact area mm2", contact.area_mm2);
 }
 
-template <int Step, class Frame>
-void tell_samples(Results& tell, const char* name, const Frame& frame) {
-  const Index rows = frame.red.rows() / Step, cols = frame.red.cols() / Step;
+template <class Frame>
+void tell_samples(Results& tell, const char* name, const Frame& frame, int step) {
+  const Index rows = frame.red.rows() / step, cols = frame.red.cols() / step;
   test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
-  FrameSampler<std::uint8_t, Step> sampler(frame.red.cols());
-  const auto view = [](auto& image) {
-    return StridedView<std::uint16_t>(image.cells.data(), image.rows(), image.cols(), image.cols());
-  };
-  const bool done = sampler.band(0, rows, frame.red, frame.green, view(red), view(green));
+  const bool done = sample_frame(frame.red, frame.green, step, as_view(red), as_view(green));
   tell(name, done ? mean(red) + mean(green) : -1);
 }
 
@@ -79,9 +75,9 @@ void tell_images(Results& tell) {
   const test::Pad pad;
   const auto free_mm = pad.pressed_depths(0), pressed_mm = pad.pressed_depths(3);
   const auto frame = pad.frame<std::uint8_t>(pressed_mm);
-  tell_samples<2>(tell, "samples of 2 x 2", frame);
-  tell_samples<3>(tell, "samples of 3 x 3", frame);
-  tell_samples<4>(tell, "samples of 4 x 4", frame);
+  tell_samples(tell, "samples of 2 x 2", frame, 2);
+  tell_samples(tell, "samples of 3 x 3", frame, 3);
+  tell_samples(tell, "samples of 4 x 4", frame, 4);
   auto estimate = pad.estimator<float>({.window_px = 1});
   test::Image<float> depth(pad.rows, pad.cols);
   test::Image<PixelStatus> status(pad.rows, pad.cols);

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// All methods in sequence: correct results that are the same from run to run and with one and two
-// threads, disabled stages, and refused inputs.
+// All methods in sequence: correct results that are the same from run to run and from a copy,
+// stages that do not exist, and refused inputs.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,25 +25,20 @@ const PressedFrames& frames() {
   return all;
 }
 
-template <class Methods>
-class Run {
- public:
-  using Chain = fingerpad::Fingertip<Methods>;
+/// A fingertip, and what it says of all frames.
+struct Run {
+  Fingertip tip;
+  std::vector<FingertipResult> results = {};
 
-  Run() : chain_(frames().options()) {
+  explicit Run(const FingertipOptions& options) : Run(Fingertip(options)) {}
+  explicit Run(const Fingertip& from) : tip(from) {
     for (std::size_t k = 0; k < frames().size(); ++k) {
-      results.push_back(touch_of(chain_, frames()[k].view()));
+      results.push_back(touch_of(tip, frames()[k].view()));
     }
   }
-  Chain& chain() { return chain_; }
-  std::vector<FingertipResult> results;
-
- private:
-  Chain chain_;
 };
 
-template <class A, class B>
-void check_same(A& a, B& b) {
+void check_same(const Run& a, const Run& b) {
   const auto same = [](double x, double y) { return test::same_bits(x, y); };
   for (std::size_t k = 0; k < a.results.size(); ++k) {
     const FingertipResult &x = a.results[k], &y = b.results[k];
@@ -59,12 +53,13 @@ void check_same(A& a, B& b) {
     CHECK(same(x.wrench.force_n.x, y.wrench.force_n.x));
     CHECK(same(x.wrench.moment_n_mm.z, y.wrench.moment_n_mm.z));
   }
-  const auto p = a.chain().depth_mm(), q = b.chain().depth_mm();
+  const auto p = a.tip.depth_mm(), q = b.tip.depth_mm();
+  const auto in_contact = a.tip.contact_mask(), in_contact_too = b.tip.contact_mask();
   bool same_depth = true;
   for (Index i = 0; i < p.rows(); ++i) {
     for (Index j = 0; j < p.cols(); ++j) {
       same_depth = same_depth && test::same_bits(p(i, j), q(i, j)) &&
-                   a.chain().contact_mask()(i, j) == b.chain().contact_mask()(i, j);
+                   in_contact(i, j) == in_contact_too(i, j);
     }
   }
   CHECK(same_depth);
@@ -72,10 +67,8 @@ void check_same(A& a, B& b) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
-                   "[chain]",
-                   (InSamples<ByDefault, 2>)) {  // windows are half the default width
-  const Run<TestType> run;
+TEST_CASE("the whole chain tells what the plate does", "[chain]") {
+  const Run run(in_samples(frames().options(), 2));  // windows are half the default width
   const auto& first = frames()[0];
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     CAPTURE(k);
@@ -96,69 +89,104 @@ TEMPLATE_TEST_CASE("the whole chain tells what the plate does",
   }
 }
 
-TEMPLATE_TEST_CASE("the whole chain gives the same bits from run to run and from two threads",
-                   "[chain]",
-                   Lean,
-                   ByDefault) {
-  Run<TestType> once, again;
-  Run<Shared<TestType>> shared;
+TEST_CASE("the whole chain gives the same bits from run to run and from a copy", "[chain]") {
+  const auto options = GENERATE(frames().options(), lean(frames().options()));
+  const Fingertip fingertip(options);
+  const Run once(options), again(options), copied(fingertip);
   check_same(once, again);
-  check_same(once, shared);
+  check_same(once, copied);
+}
+
+TEST_CASE("a copy returns to a frame", "[chain]") {
+  Fingertip tip(frames().options());
+  (void)touch_of(tip, frames()[0].view());
+  Fingertip then = tip;
+  const auto expected = touch_of(tip, frames()[1].view());
+  (void)touch_of(tip, frames()[2].view());
+  const auto found = touch_of(then, frames()[1].view());
+  CHECK(test::same_bits(found.stick.stick_ratio, expected.stick.stick_ratio));
+  CHECK(test::same_bits(found.motion.angles.z_rad, expected.motion.angles.z_rad));
+  CHECK(test::same_bits(found.wrench.force_n.x, expected.wrench.force_n.x));
 }
 
 namespace {
 
-struct DepthAndContact : fingerpad::FingertipMethods {
-  static constexpr bool has_dots = false, has_wrench = false;
-};
-struct WithoutLookUp : fingerpad::FingertipMethods {
-  static constexpr bool has_look_up = false;
-};
-struct WithoutWrench : fingerpad::FingertipMethods {
-  static constexpr bool has_wrench = false;
-};
-struct DepthAlone : fingerpad::FingertipMethods {
-  static constexpr bool has_contact = false;
-};
-template <int Step>
-struct Sampled : DepthAndContact {
-  static constexpr int sampling = Step;
-};
-struct EveryPixel : DepthAlone {
-  static constexpr int sampling = 1;
-};
-struct WithLight : EveryPixel {
-  static constexpr bool has_neighbour_light = true;
-};
-struct SampledWithLight : DepthAlone {
-  static constexpr bool has_neighbour_light = true;
-};
-template <class Methods>
-using TipOf = fingerpad::Fingertip<Methods>;
+FingertipOptions contact_and_depth(int step) {
+  FingertipOptions options = in_samples(frames().options(), step);
+  options.free_dots_mm = {};
+  options.force_of_area = options.force_of_depth = {};
+  options.shear = {};
+  options.rim_mm = {};
+  return options;
+}
+FingertipOptions depth_alone(int step) {
+  FingertipOptions options = in_samples(frames().options(), step);
+  options.depth_alone = true;
+  return options;
+}
+
+test::Image<float> depth_of(Fingertip& tip, const Inputs& in) {
+  (void)touch_of(tip, in);
+  test::Image<float> out(tip.rows(), tip.cols(), 0.0F);
+  const auto depth_mm = tip.depth_mm();
+  for (Index i = 0; i < out.rows(); ++i) {
+    for (Index j = 0; j < out.cols(); ++j) {
+      out(i, j) = depth_mm(i, j);
+    }
+  }
+  return out;
+}
 
 }  // namespace
 
 TEST_CASE("a fingertip without stages gives the same depth and contact", "[chain]") {
-  Run<fingerpad::FingertipMethods> whole;
-  TipOf<DepthAndContact> contact(frames().options());
-  TipOf<DepthAlone> depth(frames().options());
+  const Run whole(frames().options());
+  Fingertip contact(contact_and_depth(3)), depth(depth_alone(3));
   const Inputs in = frames()[frames().size() - 1].view();
-  const auto c = contact(in.image, in.dots_px, in.pressure_mpa);
-  const auto d = depth(in.image, in.dots_px, in.pressure_mpa);
+  const auto c = contact(in.red, in.green);
+  const auto d = depth(in.red, in.green);
   CHECK(c.ok());
   CHECK(d.ok());
   CHECK(c.contact.contact_px == whole.results.back().contact.contact_px);
   CHECK(d.depth.count == whole.results.back().depth.count);
   CHECK_FALSE(c.wrench.ok());
-  CHECK(sizeof(contact) < sizeof(whole.chain()) / 2);
+  CHECK_FALSE(c.lacks_wrench);  // nobody has asked for it
+  CHECK_FALSE(c.flat_area.ok());
+  CHECK(contact.dot_states().rows() == 0);
+  CHECK(contact.dot_slips().rows() == 0);
+  CHECK_FALSE(is_finite(contact.rim_tension(0)));
+}
+
+TEST_CASE("the flat area can be asked for without a curve", "[chain]") {
+  const Run whole(frames().options());
+  FingertipOptions options = contact_and_depth(3);
+  options.flat_area.emplace();
+  Fingertip tip(options);
+  const auto touch = touch_of(tip, frames()[0].view());
+  CHECK(test::same_bits(touch.flat_area.area_mm2, whole.results[0].flat_area.area_mm2));
+}
+
+TEST_CASE("frames of 16 bit", "[chain]") {
+  Fingertip one(contact_and_depth(3)), other(contact_and_depth(3));
+  const Inputs in = frames()[0].view();
+  const auto times_256 = [](const auto& view) {
+    return fingerpad::LazyView(view.rows(), view.cols(), [view](Index i, Index j) {
+      return static_cast<std::uint16_t>(256 * view(i, j));
+    });
+  };
+  const auto expected = one(in.red, in.green);
+  const auto touch = other(times_256(in.red), times_256(in.green));
+  CHECK(touch.ok());
+  CHECK(touch.contact.contact_px == expected.contact.contact_px);
+  CHECK(touch.contact.area_mm2 == expected.contact.area_mm2);
 }
 
 TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chain]") {
-  Run<fingerpad::FingertipMethods> whole;
+  const Run whole(frames().options());
   auto options = frames().options();
-  options.force_of_area = {};
-  options.force_of_depth = {};
-  TipOf<WithoutLookUp> tip(options);
+  options.force_of_area = options.force_of_depth = {};
+  options.shear = {};
+  Fingertip tip(options);
   for (std::size_t k = 0; k < frames().size(); ++k) {
     const FingertipResult touch = touch_of(tip, frames()[k].view());
     const FingertipResult& expected = whole.results[k];
@@ -173,10 +201,12 @@ TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chai
 TEST_CASE("without the six-axis force friction is that of the look-up", "[chain]") {
   // The moment of a contact with uniform pressure acts at the mean distance from its middle: 2/3 of
   // the radius.
-  TipOf<WithoutWrench> tip(frames().options());
+  auto options = frames().options();
+  options.rim_mm = {};
+  Fingertip tip(options);
   for (std::size_t k = 0; k < frames().size(); ++k) {
     const Inputs in = frames()[k].view();
-    const FingertipResult touch = tip(in.image, in.dots_px, 0.0);
+    const FingertipResult touch = tip(in.red, in.green, in.dots_px);
     REQUIRE(touch.normal.has_force());
     const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
     const double load_n = std::hypot(norm(touch.shear.tangential_force_n),
@@ -189,28 +219,21 @@ TEST_CASE("without the six-axis force friction is that of the look-up", "[chain]
 }
 
 TEST_CASE("samples beside the pad are not taken", "[chain]") {
-  constexpr int step = 2;
-  const auto reference = frames().options().reference;
-  const auto pad = sampled(reference, step);
-  fingerpad::detail::FrameSamples<std::uint8_t, step, 1> samples(reference);
-  test::Frame<std::uint8_t> bright(reference.rows, reference.cols);
-  for (auto* channel : {&bright.red, &bright.green}) {
-    std::fill(channel->cells.begin(), channel->cells.end(), std::uint8_t(200));
-  }
-  fingerpad::detail::OneThread executor;
-  const auto taken = samples(fingerpad::ColorFrame(bright.red, bright.green), executor);
+  const fingerpad::detail::SampledPad<float> pad(frames().options().reference, 2);
   Index beside = 0;
-  for (Index i = 0; i < pad.rows; ++i) {
-    Index first = pad.cols, last = -1;
-    for (Index j = 0; j < pad.cols; ++j) {
-      first = pad.in_pad(i, j) ? std::min(first, j) : first;
-      last = pad.in_pad(i, j) ? j : last;
+  REQUIRE(static_cast<Index>(pad.spans.size()) == pad.samples.rows);
+  for (Index i = 0; i < pad.samples.rows; ++i) {
+    const auto& span = pad.spans[static_cast<std::size_t>(i)];
+    CHECK(span.row == i);
+    CHECK(span.rows == 1);
+    if (span.cols > 0) {
+      CHECK(pad.samples.in_pad(i, span.col));
+      CHECK(pad.samples.in_pad(i, span.col + span.cols - 1));
     }
-    for (Index j = 0; j < pad.cols; ++j) {
-      const bool within = first <= j && j <= last;
+    for (Index j = 0; j < pad.samples.cols; ++j) {
+      const bool within = span.col <= j && j < span.col + span.cols;
       beside += within ? 0 : 1;
-      CHECK((taken.red(i, j) > 0) == within);
-      CHECK((taken.green(i, j) > 0) == within);
+      CHECK((within || !pad.samples.in_pad(i, j)));
     }
   }
   CHECK(beside > 100);
@@ -219,11 +242,9 @@ TEST_CASE("samples beside the pad are not taken", "[chain]") {
 TEST_CASE("sampled frames say what whole ones do", "[chain]") {
   // rows that the samples do not fill completely
   static const PressedFrames wide(481, 642, 1);
-  TipOf<Sampled<1>> every(wide.options());
-  TipOf<Sampled<3>> third(wide.options());
+  Fingertip every(in_samples(wide.options(), 1)), third(wide.options());
   const PressedFrame& f = wide[0];
-  const Inputs in = f.view();
-  const auto a = every(in.image, in.dots_px, 0.0), b = third(in.image, in.dots_px, 0.0);
+  const auto a = touch_of(every, f.view()), b = touch_of(third, f.view());
   CHECK(b.contact.area_mm2 == Approx(a.contact.area_mm2).epsilon(0.02));
   CHECK(b.contact.depth_mm == Approx(a.contact.depth_mm).margin(0.003));
   const auto p = every.depth_mm(), q = third.depth_mm();
@@ -251,31 +272,28 @@ TEST_CASE("the least region in pixels counts whole samples", "[chain]") {
   auto options = frames().options();
   options.contact.places_edge = false;
   const Inputs in = frames()[0].view();
-  TipOf<Sampled<3>> any(options);
-  const Index samples = any(in.image, in.dots_px, 0.0).contact.contact_px;
+  Fingertip any(options);
+  const Index samples = touch_of(any, in).contact.contact_px;
   REQUIRE(samples > 100);
   options.contact.min_region_px = 9 * static_cast<int>(samples);
-  TipOf<Sampled<3>> just(options);
-  CHECK(just(in.image, in.dots_px, 0.0).contact.contact_px == samples);
+  Fingertip just(options);
+  CHECK(touch_of(just, in).contact.contact_px == samples);
   ++options.contact.min_region_px;
-  TipOf<Sampled<3>> less(options);
-  CHECK(less(in.image, in.dots_px, 0.0).contact.contact_px == 0);
+  Fingertip less(options);
+  CHECK(touch_of(less, in).contact.contact_px == 0);
 }
 
-TEMPLATE_TEST_CASE("bad pixels leave a sampled frame as it was farther away than windows reach",
-                   "[chain]",
-                   Sampled<1>,
-                   Sampled<2>,
-                   Sampled<3>) {
-  TipOf<TestType> tip(frames().options());
+TEST_CASE("bad pixels leave a sampled frame as it was farther away than windows reach", "[chain]") {
+  Fingertip tip(contact_and_depth(GENERATE(1, 2, 3)));
   const PressedFrame& f = frames()[0];
-  const Inputs in = f.view();
-  (void)tip(in.image, in.dots_px, 0.0);
+  (void)touch_of(tip, f.view());
   const auto shown = tip.depth_mm();
   const test::Image<float> before = [&] {
     test::Image<float> copy(shown.rows(), shown.cols());
-    for (std::size_t k = 0; k < copy.cells.size(); ++k) {
-      copy.cells[k] = shown.data()[k];
+    for (Index i = 0; i < copy.rows(); ++i) {
+      for (Index j = 0; j < copy.cols(); ++j) {
+        copy(i, j) = shown(i, j);
+      }
     }
     return copy;
   }();
@@ -284,7 +302,7 @@ TEMPLATE_TEST_CASE("bad pixels leave a sampled frame as it was farther away than
   for (Index k = 0; k < 9; ++k) {
     bad.red(row + k / 3, col + k % 3) = k % 2 == 0 ? std::uint8_t(255) : std::uint8_t(0);
   }
-  (void)tip(fingerpad::ColorFrame(bad.red, bad.green), in.dots_px, 0.0);
+  (void)tip(bad.red, bad.green);
   const auto after = tip.depth_mm();
   bool same = true;
   double change = 0;
@@ -303,13 +321,13 @@ TEMPLATE_TEST_CASE("bad pixels leave a sampled frame as it was farther away than
 }
 
 TEST_CASE("what the options lack has no answer, and the rest is the same", "[chain]") {
-  const Run<fingerpad::FingertipMethods> whole;
+  const Run whole(frames().options());
   auto options = frames().options();
   options.free_dots_mm = {};
   options.rim_mm = {};
   options.force_of_depth = {};
   options.shear = {};
-  TipOf<fingerpad::FingertipMethods> tip(options);
+  Fingertip tip(options);
   const FingertipResult touch = touch_of(tip, frames()[0].view());
   const FingertipResult& expected = whole.results[0];
   CHECK(touch.ok());
@@ -332,17 +350,11 @@ TEST_CASE("an unknown shift counts as none", "[chain]") {
   curve.per_mm_sq = 0.02;
   curve.per_rad_sq = 0.5;
   options.force_of_depth.emplace(curve);
-  TipOf<fingerpad::FingertipMethods> tip(options);
+  Fingertip tip(options);
   const FingertipResult touch = touch_of(tip, frames()[0].view());
   const auto unmoved = (*options.force_of_depth)(touch.contact.depth_mm, {0, 0}, 0.0);
   REQUIRE(unmoved.force_n > 0);
   CHECK(touch.by_depth.force_n == unmoved.force_n);
-}
-
-TEST_CASE("the size of frames has no default", "[chain]") {
-  const decltype(frames().options()) options{};
-  CHECK(options.rows == 0);
-  CHECK(options.cols == 0);
 }
 
 TEST_CASE("a free apex that is not that of the reference is refused", "[chain]") {
@@ -350,7 +362,7 @@ TEST_CASE("a free apex that is not that of the reference is refused", "[chain]")
   const double apex_mm = options.contact.free_apex_mm;
   const auto with = [&](double share) {
     options.contact.free_apex_mm = share * apex_mm;
-    return test::refusal([&] { TipOf<Sampled<3>> tip(options); });
+    return test::refusal([&] { Fingertip tip(options); });
   };
   for (const double share : {0.96, 1.0, 1.04}) {
     CHECK(with(share) == "accepted");
@@ -369,24 +381,24 @@ TEST_CASE("a free apex that is not that of the reference is refused", "[chain]")
 }
 
 TEST_CASE("a fingertip takes the neighbour light off as that method does", "[chain]") {
-  auto options = frames().options();
+  auto options = depth_alone(1);
   options.camera.pixel_aspect = 1.25;
-  TipOf<EveryPixel> free(options), plain(options);
+  Fingertip free(options), plain(options);
   const Inputs in = frames()[1].view();
-  (void)touch_of(free, frames()[0].view());
+  const auto free_mm = depth_of(free, frames()[0].view());
   (void)touch_of(plain, in);
   options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
-  CHECK(test::refusal([&] { TipOf<WithLight> without(options); }) ==
+  CHECK(test::refusal([&] { Fingertip without(options); }) ==
         "FingertipOptions: rows of free_depth_mm = 0, must be the size of the frame");
-  options.free_depth_mm = free.depth_mm();
-  TipOf<WithLight> tip(options);
+  options.free_depth_mm = fingerpad::as_view(free_mm);
+  Fingertip tip(options);
   (void)touch_of(tip, in);
 
   // pitch of a pixel on the membrane at the pad's mean depth
   double sum = 0, count = 0;
-  for (Index i = 0; i < options.rows; ++i) {
-    for (Index j = 0; j < options.cols; ++j) {
-      const double depth = static_cast<double>(free.depth_mm()(i, j));
+  for (Index i = 0; i < tip.rows(); ++i) {
+    for (Index j = 0; j < tip.cols(); ++j) {
+      const double depth = static_cast<double>(free_mm(i, j));
       sum += depth == depth ? depth : 0;
       count += depth == depth ? 1 : 0;
     }
@@ -396,14 +408,13 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
       point_at(options.camera, options.camera.center_y_px, center + 1, sum / count).x;
   auto light = *options.neighbour_light;
   light.pixel_aspect = 1.25F;
-  fingerpad::NeighbourLightCompensation<> compensate(light, static_cast<float>(pitch),
-                                                     free.depth_mm());
-  test::Image<float> expected(options.rows, options.cols, 0.0F);
+  fingerpad::NeighbourLightCompensation<> compensate(light, static_cast<float>(pitch), free_mm);
+  test::Image<float> expected(tip.rows(), tip.cols(), 0.0F);
   CHECK(compensate(plain.depth_mm(), expected) == fingerpad::FrameStatus::ok);
   double largest = 0, moved = 0;
   bool as_many = true;
-  for (Index i = 0; i < options.rows; ++i) {
-    for (Index j = 0; j < options.cols; ++j) {
+  for (Index i = 0; i < tip.rows(); ++i) {
+    for (Index j = 0; j < tip.cols(); ++j) {
       const auto got = static_cast<double>(tip.depth_mm()(i, j));
       const auto wanted = static_cast<double>(expected(i, j));
       as_many = as_many && (got == got) == (wanted == wanted);
@@ -417,32 +428,23 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
 }
 
 TEST_CASE("a fingertip takes as much neighbour light off samples", "[chain]") {
-  auto options = frames().options();
-  const auto taken_off = [&]<class Plain, class Lit>(TipOf<Plain> tip, std::type_identity<Lit>) {
-    (void)touch_of(tip, frames()[0].view());
-    test::Image<float> free_mm(options.rows, options.cols, 0.0F);
-    const auto copy = [](const auto& from, test::Image<float>& to) {
-      for (Index i = 0; i < to.rows(); ++i) {
-        std::copy_n(from.row(i), to.cols(), &to(i, 0));
-      }
-    };
-    copy(tip.depth_mm(), free_mm);
+  const auto taken_off = [](int step) {
+    auto options = depth_alone(step);
+    Fingertip tip(options);
+    const auto free_mm = depth_of(tip, frames()[0].view());
     options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
-    options.free_depth_mm = fingerpad::as_view(std::as_const(free_mm));
-    TipOf<Lit> lit(options);
-    CHECK(touch_of(tip, frames()[1].view()).ok());
+    options.free_depth_mm = fingerpad::as_view(free_mm);
+    Fingertip lit(options);
     CHECK(touch_of(lit, frames()[1].view()).ok());
-    test::Image<float> taken(options.rows, options.cols, 0.0F);
-    for (Index i = 0; i < options.rows; ++i) {
-      for (Index j = 0; j < options.cols; ++j) {
-        taken(i, j) = tip.depth_mm()(i, j) - lit.depth_mm()(i, j);
-      }
+    const auto without = depth_of(tip, frames()[1].view()),
+               with = depth_of(lit, frames()[1].view());
+    test::Image<float> taken(tip.rows(), tip.cols(), 0.0F);
+    for (std::size_t k = 0; k < taken.cells.size(); ++k) {
+      taken.cells[k] = without.cells[k] - with.cells[k];
     }
     return taken;
   };
-  const auto every_pixel = taken_off(TipOf<EveryPixel>(options), std::type_identity<WithLight>{});
-  const auto samples =
-      taken_off(TipOf<DepthAlone>(options), std::type_identity<SampledWithLight>{});
+  const auto every_pixel = taken_off(1), samples = taken_off(3);
   double product = 0, taken_sq = 0, count = 0;
   for (std::size_t k = 0; k < samples.cells.size(); ++k) {
     const auto found = static_cast<double>(samples.cells[k]);
@@ -459,37 +461,34 @@ TEST_CASE("a fingertip takes as much neighbour light off samples", "[chain]") {
 }
 
 TEST_CASE("a fingertip says that the neighbour light's free depth is not this pad's", "[chain]") {
-  auto options = frames().options();
-  TipOf<EveryPixel> free(options);
-  (void)touch_of(free, frames()[0].view());
-  test::Image<float> in_m(options.rows, options.cols, 0.0F);
-  for (Index i = 0; i < options.rows; ++i) {
-    for (Index j = 0; j < options.cols; ++j) {
-      in_m(i, j) = free.depth_mm()(i, j) / 1000;
-    }
+  Fingertip free(depth_alone(1));
+  auto in_m = depth_of(free, frames()[0].view());
+  for (float& depth : in_m.cells) {
+    depth /= 1000;
   }
+  auto options = depth_alone(3);
   options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
   options.free_depth_mm = fingerpad::as_view(std::as_const(in_m));
-  TipOf<SampledWithLight> tip(options);
+  Fingertip tip(options);
   const auto touch = touch_of(tip, frames()[1].view());
   CHECK(touch.depth.ok());
   CHECK(touch.neighbour_light == fingerpad::FrameStatus::not_of_this_pad);
+  CHECK(touch.depth_in_doubt);
   CHECK(touch.status == fingerpad::FingertipStatus::partial);
 }
 
 TEST_CASE("a fingertip refuses frames and dots of another size", "[chain]") {
-  TipOf<fingerpad::FingertipMethods> tip(frames().options());
+  Fingertip tip(frames().options());
   const Inputs in = frames()[0].view();
-  const auto cut =
-      fingerpad::region(in.image.red, 0, 0, in.image.red.rows(), in.image.red.cols() - 1);
+  const auto cut = fingerpad::region(in.red, 0, 0, in.red.rows(), in.red.cols() - 1);
   const auto few = fingerpad::region(in.dots_px, 0, 0, in.dots_px.rows() - 1, in.dots_px.cols());
-  const auto refused = [&](const auto& image, const auto& dots) {
-    const auto touch = tip(image, dots, in.side_dots_mm, in.pressure_mpa);
+  const auto refused = [&](const auto& red, const auto& green, const auto& dots) {
+    const auto touch = tip(red, green, dots, in.side_dots_mm, in.pressure_mpa);
     return touch.status == fingerpad::FingertipStatus::refused && !touch.ok();
   };
-  CHECK(refused(fingerpad::ColorFrame(cut, in.image.green), in.dots_px));
-  CHECK(refused(fingerpad::ColorFrame(in.image.red, cut), in.dots_px));
-  CHECK(refused(in.image, few));
+  CHECK(refused(cut, in.green, in.dots_px));
+  CHECK(refused(in.red, cut, in.dots_px));
+  CHECK(refused(in.red, in.green, few));
   CHECK(touch_of(tip, in).status != fingerpad::FingertipStatus::refused);
 }
 
@@ -498,8 +497,8 @@ namespace {
 /// The pad of frames() without contact.
 test::Frame<std::uint8_t> free_frame() {
   test::Pad pad;
-  pad.rows = frames().options().rows;
-  pad.cols = frames().options().cols;
+  pad.rows = frames().options().reference.rows;
+  pad.cols = frames().options().reference.cols;
   pad.camera = frames().options().camera;
   return pad.frame<std::uint8_t>(pad.free_depths(), 1, 9);
 }
@@ -507,11 +506,11 @@ test::Frame<std::uint8_t> free_frame() {
 using Levels = test::Frame<std::uint8_t>;
 
 Levels copy_of(const Inputs& in) {
-  Levels out(in.image.red.rows(), in.image.red.cols());
+  Levels out(in.red.rows(), in.red.cols());
   for (Index i = 0; i < out.red.rows(); ++i) {
     for (Index j = 0; j < out.red.cols(); ++j) {
-      out.red(i, j) = in.image.red(i, j);
-      out.green(i, j) = in.image.green(i, j);
+      out.red(i, j) = in.red(i, j);
+      out.green(i, j) = in.green(i, j);
     }
   }
   return out;
@@ -528,11 +527,10 @@ Levels times(Levels levels, double factor) {
 }  // namespace
 
 TEST_CASE("a fingertip says that nothing touches", "[chain]") {
-  TipOf<fingerpad::FingertipMethods> tip(frames().options());
+  Fingertip tip(frames().options());
   const Inputs in = frames()[0].view();
   const auto free = free_frame();
-  const auto touch = tip(fingerpad::ColorFrame(free.red, free.green), in.dots_px, in.side_dots_mm,
-                         in.pressure_mpa);
+  const auto touch = tip(free.red, free.green, in.dots_px, in.side_dots_mm, in.pressure_mpa);
   CHECK(touch.status == fingerpad::FingertipStatus::no_contact);
   CHECK(std::string(name_of(touch.status)) == "no contact");
 }
@@ -573,14 +571,15 @@ TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothin
   options.rim_mm = {};
   options.force_of_depth = {};
   options.shear = {};
-  TipOf<fingerpad::FingertipMethods> tip(options);
-  TipOf<EveryPixel> every_pixel(options);
+  Fingertip tip(options);
+  Fingertip every_pixel(depth_alone(1));
   const Inputs in = frames()[0].view();
-  const auto said = [&](auto& one, const Levels& seen) {
+  const auto said = [&](Fingertip& one, const Levels& seen) {
     one.reset();
-    return std::string(name_of(one(fingerpad::ColorFrame(seen.red, seen.green), in.dots_px,
-                                   in.side_dots_mm, in.pressure_mpa)
-                                   .status));
+    const auto touch = one(seen.red, seen.green, in.dots_px, in.side_dots_mm, in.pressure_mpa);
+    CHECK((touch.depth_in_doubt || touch.contact_in_doubt) ==
+          (touch.status == fingerpad::FingertipStatus::partial));
+    return std::string(name_of(touch.status));
   };
   for (const Mistake& mistake : mistakes) {
     const Levels seen = mistake.make(copy_of(in));
@@ -594,7 +593,7 @@ TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothin
 }
 
 TEST_CASE("a fingertip that has forgotten begins anew", "[chain]") {
-  TipOf<fingerpad::FingertipMethods> tip(frames().options());
+  Fingertip tip(frames().options());
   const auto first = touch_of(tip, frames()[0].view());
   (void)touch_of(tip, frames()[1].view());
   tip.reset();

@@ -66,7 +66,8 @@ struct PressedFrame {
   test::Wrench6 wrench;
 
   Inputs view() const {
-    return {{image.red, image.green}, dots_px.view(), side_dots_mm.view(), pressure_mpa};
+    return {fingerpad::as_view(image.red), fingerpad::as_view(image.green), dots_px.view(),
+            side_dots_mm.view(), pressure_mpa};
   }
   double contact_area_mm2() const { return std::numbers::pi * plate.contact_mm * plate.contact_mm; }
 };
@@ -93,10 +94,8 @@ class PressedFrames {
   Index pixels() const { return pad_.rows * pad_.cols; }
 
   /// Options that refer to this object.
-  auto options() const {
-    auto reference = pad_.reference<float>();
-    fingerpad::FingertipOptions f{pad_.camera, pad_.fluid, std::move(reference), pad_.rows,
-                                  pad_.cols};
+  FingertipOptions options() const {
+    FingertipOptions f{pad_.camera, pad_.fluid, pad_.reference<float>()};
     f.free_dots_mm = free_dots_.view();
     f.rim_mm = rim_.view();
     // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px is the

@@ -26,18 +26,12 @@ test::Pad pad_of_320_x_240() {
   return pad;
 }
 
-template <int Step>
-bool samples(const test::Frame<std::uint8_t>& frame, int calls) {
-  using Sampler = FrameSampler<std::uint8_t, Step>;
-  const Index rows = frame.red.rows() / Step, cols = frame.red.cols() / Step;
+bool samples(const test::Frame<std::uint8_t>& frame, int step, int calls) {
+  const Index rows = frame.red.rows() / step, cols = frame.red.cols() / step;
   test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
-  Sampler sampler(frame.red.cols());
-  const auto view = [](test::Image<std::uint16_t>& image) {
-    return StridedView<std::uint16_t>(image.cells.data(), image.rows(), image.cols(), image.cols());
-  };
   bool done = true;
   for (int k = 0; k < calls; ++k) {
-    done &= sampler.band(0, rows, frame.red, frame.green, view(red), view(green));
+    done &= sample_frame(frame.red, frame.green, step, as_view(red), as_view(green));
   }
   return done;
 }
@@ -77,8 +71,8 @@ int main(int argc, char** argv) {
   const test::Pad pad = pad_of_320_x_240();
   const auto pressed_mm = pad.pressed_depths(3);
   const auto frame = pad.frame<std::uint8_t>(pressed_mm);
-  const bool done = name == "samples3"   ? samples<3>(frame, calls)
-                    : name == "samples4" ? samples<4>(frame, calls)
+  const bool done = name == "samples3"   ? samples(frame, 3, calls)
+                    : name == "samples4" ? samples(frame, 4, calls)
                     : name == "depth"    ? depth(pad, frame, calls)
                     : name == "contact"  ? contact(pad, pressed_mm, calls)
                                          : false;

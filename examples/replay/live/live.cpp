@@ -99,7 +99,7 @@ Log play(const Options& options,
          Recording& pad,
          LiveFrames& frames,
          const std::function<bool(int, const cv::Mat&)>& show) {
-  Chain chain(pad, options, cv::Mat(pad.reference.size(), CV_8UC3));
+  Chain chain(pad, options);
   const Painter painter(pad.sensor, pad.reference_depth, brightest_level(pad.reference));
   const int end = options.range.last.value_or((std::numeric_limits<int>::max)());
   for (int k = 0; k < options.range.first; ++k) {

@@ -15,13 +15,11 @@ namespace {
 using fingerpad::FingertipOptions;
 using fingerpad::Point3;
 
-Reference reference_of(const Recording& recording) {
-  const auto fit = [&](const auto& frame) {
-    return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, frame.red,
-                                    frame.green, recording.reference_depth);
-  };
-  return recording.reference.depth() == CV_16U ? fit(color_of<std::uint16_t>(recording.reference))
-                                               : fit(color_of(recording.reference));
+fingerpad::DepthReference<float> reference_of(const Recording& recording) {
+  return with_colors(recording.reference, [&](const auto& red, const auto& green) {
+    return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, red,
+                                    green, recording.reference_depth);
+  });
 }
 
 double threshold_of_shape(const Recording& recording) {
@@ -72,8 +70,8 @@ fingerpad::StridedView<const Point3<double>> kept(const SpaceGrid& points,
 FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px) {
   const Sensor& sensor = recording.sensor;
   const cv::Mat_<float>& shape_mm = recording.reference_depth;
-  FingertipSettings settings(FingertipOptions{
-      sensor.camera, sensor.absorption, reference_of(recording), shape_mm.rows, shape_mm.cols});
+  FingertipSettings settings(
+      FingertipOptions{sensor.camera, sensor.absorption, reference_of(recording)});
   FingertipOptions& options = settings.options;
   options.smoothing_px = sensor.smoothing_px.value_or(options.smoothing_px);
   const auto& calibrated = sensor.contact_threshold_per_mm;

@@ -17,20 +17,14 @@
 
 namespace replay {
 
-/// Views of red and green of an OpenCV image in BGR order.
-template <class Pixel = std::uint8_t>
-auto color_of(const cv::Mat& image) {
-  return fingerpad::ColorFrame(fingerpad::channel<Pixel>(image, 2),
-                               fingerpad::channel<Pixel>(image, 1));
+/// `use(red, green)` of an OpenCV image in BGR order, of 8 or 16 bit.
+template <class Use>
+auto with_colors(const cv::Mat& image, const Use& use) {
+  return image.depth() == CV_16U ? use(fingerpad::channel<std::uint16_t>(image, 2),
+                                       fingerpad::channel<std::uint16_t>(image, 1))
+                                 : use(fingerpad::channel<std::uint8_t>(image, 2),
+                                       fingerpad::channel<std::uint8_t>(image, 1));
 }
-
-/// The reference of the free pad; the same type for images of 8 and 16 bits.
-using Reference =
-    decltype(fingerpad::fit_reference(std::declval<const fingerpad::Camera<double>&>(),
-                                      std::declval<const fingerpad::Absorption<double>&>(),
-                                      color_of(cv::Mat()).red,
-                                      color_of(cv::Mat()).green,
-                                      std::declval<const cv::Mat_<float>&>()));
 
 /// Options together with the points that they view.
 struct FingertipSettings {
@@ -50,8 +44,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
 /// Why a recording has no six-axis forces; empty if it has them.
 std::string lacking_for_wrench(const Recording& recording);
 
-/// A complete fingertip with these settings and the default methods, for 8-bit frames. It is
-/// compiled once for all programs.
+/// A fingertip with these settings, compiled once for all programs.
 class RecordedFingertip {
  public:
   explicit RecordedFingertip(const FingertipSettings& settings);

@@ -3,10 +3,8 @@
 #include "replay/steps/fingertip_step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,30 +18,15 @@ namespace replay {
 namespace {
 
 using fingerpad::FingertipResult;
-using fingerpad::FingertipStage;
 using fingerpad::ForceStatus;
 
-template <class Pixel>
-bool has_cells(const cv::Mat& image) {
-  return (image.depth() == CV_16U) == std::is_same_v<Pixel, std::uint16_t>;
-}
-
+using fingerpad::Fingertip;
 using fingerpad::FingertipOptions;
 
-template <class PixelType>
-struct Methods : fingerpad::FingertipMethods {
-  static constexpr bool has_neighbour_light = true;
-  static constexpr int sampling = 1;  // depth is written at every pixel
-  using Pixel = PixelType;
-};
-template <class PixelType>
-struct DepthAlone : Methods<PixelType> {
-  static constexpr bool has_contact = false;
-};
-
-template <class T>
-cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
-  cv::Mat_<T> to(static_cast<int>(from.rows()), static_cast<int>(from.cols()));
+template <class View>
+auto copy_of(const View& from) {
+  cv::Mat_<fingerpad::cell_t<View>> to(static_cast<int>(from.rows()),
+                                       static_cast<int>(from.cols()));
   for (int i = 0; i < to.rows; ++i) {
     for (int j = 0; j < to.cols; ++j) {
       to(i, j) = from(i, j);
@@ -52,14 +35,11 @@ cv::Mat_<T> copy_of(const fingerpad::StridedView<const T>& from) {
   return to;
 }
 
-/// Depth of the free pad, whose frames may have another pixel type than those of the recording.
-cv::Mat_<float> free_depth_of(const FingertipOptions& options, const cv::Mat& image) {
-  const auto depth = [&]<class Pixel>(Pixel) {
-    fingerpad::Fingertip<DepthAlone<Pixel>> fingertip(options);
-    (void)fingertip(color_of<Pixel>(image), DotGrid(), SpaceGrid(), 0);
-    return copy_of(fingertip.depth_mm());
-  };
-  return has_cells<std::uint16_t>(image) ? depth(std::uint16_t()) : depth(std::uint8_t());
+cv::Mat_<float> free_depth_of(FingertipOptions options, const cv::Mat& image) {
+  options.depth_alone = true;
+  Fingertip fingertip(options);
+  with_colors(image, [&](const auto& red, const auto& green) { (void)fingertip(red, green); });
+  return copy_of(fingertip.depth_mm());
 }
 
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
@@ -72,20 +52,6 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
   return fit_contact_threshold(recording.sensor.camera, depths_mm).threshold_per_mm;
 }
 
-/// Measures the time of each stage.
-struct Watch {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last = Clock::now();
-  std::array<double, 7> ms = {};
-  void operator()(FingertipStage ended) {
-    const auto now = Clock::now();
-    ms[static_cast<std::size_t>(ended)] =
-        std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-  }
-  double operator[](FingertipStage stage) const { return ms[static_cast<std::size_t>(stage)]; }
-};
-
-template <class Pixel>
 class Step : public FingertipStep {
  public:
   Step(const Recording& recording, const FingertipOptions& options)
@@ -100,13 +66,14 @@ class Step : public FingertipStep {
                             const cv::Mat& image,
                             const DotGrid& dots_px,
                             double time_s) override {
-    if (!has_cells<Pixel>(image)) {
-      fail(recording_.frames.last_file(), "has another bit depth than the frames before");
-    }
-    Watch watch;
-    const FingertipResult touch = fingertip_(color_of<Pixel>(image), dots_px, side_dots_of(frame),
-                                             recording_.signals.pressure_mpa(frame), time_s, watch);
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const FingertipResult touch = with_colors(image, [&](const auto& red, const auto& green) {
+      return fingertip_(red, green, dots_px, side_dots_of(frame),
+                        recording_.signals.pressure_mpa(frame), time_s);
+    });
     FingertipFrame out;
+    out.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     out.depth_mm = copy_of(fingertip_.depth_mm());
     out.contact_mask = copy_of(fingertip_.contact_mask());
     out.valid_pixels = touch.depth.valid_pixels();
@@ -118,9 +85,6 @@ class Step : public FingertipStep {
       out.dots = dots_of(dots_px, touch);
     }
     out.wrench = wrench_of(touch);
-    out.depth_ms = watch[FingertipStage::depth];
-    out.contact_ms = watch[FingertipStage::contact];
-    out.wrench_ms = watch[FingertipStage::heights] + watch[FingertipStage::wrench];
     return out;
   }
 
@@ -198,19 +162,19 @@ class Step : public FingertipStep {
 
   const Recording& recording_;
   bool with_dots_;
-  fingerpad::Fingertip<Methods<Pixel>> fingertip_;
+  Fingertip fingertip_;
   SpaceGrid no_side_dots_;  ///< of a frame without them; empty without six-axis force
 };
 
 }  // namespace
 
 std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
-                                                   const cv::Mat& first_image,
                                                    int smoothing_px,
                                                    const DotGrid& initial_px) {
   const Sensor& sensor = recording.sensor;
   FingertipSettings settings = fingertip_settings(recording, initial_px);
   FingertipOptions& options = settings.options;
+  options.sampling = 1;  // depth is written at every pixel
   options.smoothing_px = smoothing_px;
   cv::Mat_<float> free_depth_mm;
   if (const auto light = std::exchange(options.neighbour_light, std::nullopt)) {
@@ -221,10 +185,8 @@ std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
   if (!sensor.contact_threshold_per_mm && recording.free_frames.size() > 0) {
     options.contact.threshold_per_mm = contact_threshold_of(recording, options);
   }
-  if (has_cells<std::uint16_t>(first_image)) {
-    return std::make_unique<Step<std::uint16_t>>(recording, options);
-  }
-  return std::make_unique<Step<std::uint8_t>>(recording, options);
+  options.flat_area.emplace();  // written without a curve too, so that one can be fitted
+  return std::make_unique<Step>(recording, options);
 }
 
 }  // namespace replay

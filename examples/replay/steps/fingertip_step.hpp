@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Applies the library's pipeline/fingertip.hpp to a frame with its dots, side dots and pressure;
-// only this step uses that header. The pixel type is a template argument of the library, but is
-// known here only at run time.
+// only this step uses that header.
 #include <memory>
 #include <opencv2/core.hpp>
 
@@ -22,26 +21,25 @@ struct FingertipFrame {
   FrameDots dots;
   ForceFrame force;
   WrenchFrame wrench;
-  double depth_ms = not_known, contact_ms = not_known, wrench_ms = not_known;  ///< time of stages
+  double frame_ms = not_known;  ///< time of the computation
 };
 
 class FingertipStep {
  public:
   virtual ~FingertipStep() = default;
-  /// Takes frames of the reference's size in time order; throws Failure if the pixel type differs
-  /// from that of the first frame. `time_s` is NaN if unknown.
+  /// Takes frames of the reference's size, of 8 or 16 bit, in time order. `time_s` is NaN if
+  /// unknown.
   virtual FingertipFrame operator()(int frame,
                                     const cv::Mat& image,
                                     const DotGrid& dots_px,
                                     double time_s) = 0;
 };
 
-/// Fits the reference and sets up the step for frames of the type of `first_image`. The contact
+/// Fits the reference and sets up the step. The contact
 /// threshold comes from sensor.json, else from the recording's frames of the free pad, else from
 /// the free pad's known shape. `initial_px` are the free pad's dots, maybe empty. The recording
 /// must outlive the step. Throws fingerpad::parameter_error.
 std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
-                                                   const cv::Mat& first_image,
                                                    int smoothing_px,
                                                    const DotGrid& initial_px);
 

@@ -6,11 +6,11 @@
 namespace replay {
 
 struct RecordedFingertip::Whole {
-  fingerpad::Fingertip<> fingertip;
+  fingerpad::Fingertip fingertip;
 };
 
 RecordedFingertip::RecordedFingertip(const FingertipSettings& settings)
-    : whole_(new Whole{fingerpad::Fingertip<>(settings.options)}) {}
+    : whole_(new Whole{fingerpad::Fingertip(settings.options)}) {}
 RecordedFingertip::~RecordedFingertip() = default;
 
 fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,
@@ -18,7 +18,9 @@ fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,
                                                          const SpaceGrid& side_dots_mm,
                                                          double pressure_mpa,
                                                          double time_s) {
-  return whole_->fingertip(color_of(frame), dots_px, side_dots_mm, pressure_mpa, time_s);
+  return with_colors(frame, [&](const auto& red, const auto& green) {
+    return whole_->fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s);
+  });
 }
 
 }  // namespace replay

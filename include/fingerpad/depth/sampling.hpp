@@ -11,6 +11,8 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -75,209 +77,218 @@ DepthReference<S> sampled(const DepthReference<S>& reference, int step) {
   return out;
 }
 
-/// Means over Step x Step pixels, leaving out pixels that carry no information, in
-/// grey_scale_of<sample_t<Pixel>>(). If all are left out, the sample is the brightest value if one
-/// is saturated, else NaN if one is NaN, else 0, and carries no information either. Use one object
-/// per thread. No allocation per frame; O(rows cols).
-template <class Pixel, int Step>
-class FrameSampler {
-  static_assert(Step >= 1 && Step <= 16, "the sampling step is in 1..16");
+namespace detail {
 
- public:
+/// The mean of `count` pixels, as a sample.
+template <class Pixel, class Sum>
+sample_t<Pixel> sample_of(const Sum& sum, int count) {
+  if constexpr (std::integral<Pixel>) {
+    constexpr Sum units = sizeof(sample_t<Pixel>) > sizeof(Pixel) ? 256 : 1;
+    const Sum pixels = static_cast<Sum>(count);
+    return static_cast<sample_t<Pixel>>((sum * units + pixels / 2) / pixels);
+  } else {
+    return sum / Sum(count);
+  }
+}
+
+/// One sample of both channels, whose first pixel is at (row, col).
+template <class Pixel, class Red, class Green>
+std::pair<sample_t<Pixel>, sample_t<Pixel>> one_sample(
+    const Red& red, const Green& green, Index row, Index col, int step) {
   using Sample = sample_t<Pixel>;
-
-  /// For frames of so many columns, or fewer.
-  explicit FrameSampler(Index cols)
-      : cols_(cols), red_(static_cast<std::size_t>(Step * cols)), green_(red_) {}
-
-  /// Rows [first, last) of the samples of a frame; false, and nothing written, where a grid has
-  /// another size.
-  template <grid Red, grid Green>
-  bool band(Index first,
-            Index last,
-            const Red& red,
-            const Green& green,
-            const StridedView<Sample>& to_red,
-            const StridedView<Sample>& to_green) {
-    const auto from_red = as_view(red);
-    const auto from_green = as_view(green);
-    const Index cols = from_red.cols();
-    if (!same_size(from_red, from_green) || !same_size(to_red, to_green) || cols > cols_ ||
-        to_red.rows() != from_red.rows() / Step || to_red.cols() != cols / Step || first < 0 ||
-        last < first || last > to_red.rows()) {
-      return false;
+  using Sum = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
+  constexpr GreyScale scale = grey_scale_of<Pixel>();
+  Sum red_sum = Sum(0), green_sum = Sum(0);
+  int count = 0;
+  bool saturated = false, no_number = false;
+  for (Index k = 0; k < step * step; ++k) {
+    const Pixel of_red = red(row + k / step, col + k % step);
+    const Pixel of_green = green(row + k / step, col + k % step);
+    const auto r = static_cast<double>(of_red), g = static_cast<double>(of_green);
+    saturated = saturated || r >= scale.saturated || g >= scale.saturated;
+    no_number = no_number || r != r || g != g;
+    if (scale.counts(r) && scale.counts(g)) {
+      ++count;
+      red_sum = red_sum + Sum(of_red);
+      green_sum = green_sum + Sum(of_green);
     }
-    for (Index i = first; i < last; ++i) {
-      if constexpr (detail::plain_rows<std::remove_const_t<decltype(from_red)>, Pixel> &&
-                    detail::plain_rows<std::remove_const_t<decltype(from_green)>, Pixel>) {
-        if (from_red.col_stride() == 1 && from_green.col_stride() == 1 &&
-            from_red.row_stride() == from_green.row_stride()) {
-          const Rows in_place{from_red.row(i * Step), from_green.row(i * Step),
-                              from_red.row_stride()};
-          average(in_place, to_red, to_green, i);
-          continue;
-        }
+  }
+  if (count > 0) {
+    return {sample_of<Pixel>(red_sum, count), sample_of<Pixel>(green_sum, count)};
+  }
+  Sample none = Sample(0);
+  if constexpr (!std::integral<Sample>) {
+    none = no_number ? not_a_number<Sample>() : none;
+  }
+  none = saturated ? Sample(grey_scale_of<Sample>().saturated) : none;
+  return {none, none};
+}
+
+/// The pixels from (row, col) on, if they lie side by side; else nullptr.
+template <class View>
+const std::uint8_t* in_place(const View& view, Index row, Index col) {
+  if constexpr (plain_rows<View, std::uint8_t>) {
+    return view.col_stride() == 1 ? view.row(row) + col : nullptr;
+  } else {
+    return nullptr;
+  }
+}
+
+/// 64 samples of 8-bit pixels, with loops whose length the compiler knows. Step 0: any step.
+template <int Step>
+class SampleBlock {
+ public:
+  static constexpr std::size_t samples = 64;
+
+  explicit SampleBlock(int step) : step_(Step > 0 ? Step : step) {}
+
+  /// Samples from (row, col) of the frame, in pixels, on.
+  template <class Red, class Green>
+  void operator()(const Red& red,
+                  const Green& green,
+                  Index row,
+                  Index col,
+                  std::uint16_t* to_red,
+                  std::uint16_t* to_green) {
+    red_ = green_ = {};
+    count_ = bright_ = {};
+    const std::size_t width = samples * step();
+    std::array<std::uint8_t, pixels> red_row, green_row;
+    for (Index k = row; k < row + static_cast<Index>(step()); ++k) {
+      const std::uint8_t *from_red = in_place(red, k, col), *from_green = in_place(green, k, col);
+      if (from_red == nullptr || from_green == nullptr) {
+        load_pixels(red, green, k, col, static_cast<Index>(width), red_row.data(),
+                    green_row.data());
+        from_red = red_row.data();
+        from_green = green_row.data();
       }
-      for (Index k = 0; k < Step; ++k) {
-        detail::load_pixels(from_red, from_green, i * Step + k, 0, cols, red_.data() + k * cols,
-                            green_.data() + k * cols);
+      for (std::size_t at = 0; at < width; at += samples) {
+        add(from_red + at, from_green + at, &red_[at], &green_[at], &count_[at], &bright_[at]);
       }
-      average({red_.data(), green_.data(), cols}, to_red, to_green, i);
     }
-    return true;
+    write(to_red, to_green);
   }
 
  private:
-  static constexpr GreyScale scale = grey_scale_of<Pixel>();
-  static constexpr std::size_t block = 64;  ///< cells of a loop whose length the compiler knows
+  static constexpr std::size_t pixels = samples * (Step > 0 ? Step : 16);
 
-  /// Step rows of each channel, `stride` pixels apart.
-  struct Rows {
-    const Pixel* red;
-    const Pixel* green;
-    Index stride;
-  };
+  constexpr std::size_t step() const { return Step > 0 ? Step : static_cast<std::size_t>(step_); }
 
-  static void average(const Rows& from,
-                      const StridedView<Sample>& to_red,
-                      const StridedView<Sample>& to_green,
-                      Index row) {
-    const Index cols = to_red.cols();
-    Index j = 0;
-    if constexpr (std::same_as<Pixel, std::uint8_t>) {
-      constexpr auto n = static_cast<Index>(block);
-      if (to_red.col_stride() == 1 && to_green.col_stride() == 1 && cols >= n) {
-        for (; j < cols; j += n) {
-          const Index first = (std::min)(j, cols - n);  // the last ones twice
-          average_block(from, first, to_red.row(row) + first, to_green.row(row) + first);
-        }
-      }
-    }
-    for (; j < cols; ++j) {
-      one(from, j, to_red(row, j), to_green(row, j));
-    }
-  }
-
-  static void one(const Rows& from, Index col, Sample& to_red, Sample& to_green) {
-    using Sum = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
-    Sum red = Sum(0);
-    Sum green = Sum(0);
-    int count = 0;
-    bool saturated = false;
-    bool no_number = false;
-    for (Index k = 0; k < Step * Step; ++k) {
-      const Index at = k / Step * from.stride + col * Step + k % Step;
-      const auto r = static_cast<double>(from.red[at]), g = static_cast<double>(from.green[at]);
-      saturated = saturated || r >= scale.saturated || g >= scale.saturated;
-      no_number = no_number || r != r || g != g;
-      if (scale.counts(r) && scale.counts(g)) {
-        ++count;
-        red = red + Sum(from.red[at]);
-        green = green + Sum(from.green[at]);
-      }
-    }
-    if (count == 0) {
-      const Sample none = no_number ? not_a_sample() : Sample(0);
-      to_red = saturated ? Sample(grey_scale_of<Sample>().saturated) : none;
-      to_green = to_red;
-    } else {
-      to_red = mean(red, count);
-      to_green = mean(green, count);
-    }
-  }
-
-  static Sample not_a_sample() {
-    if constexpr (std::integral<Sample>) {
-      return Sample(0);
-    } else {
-      return not_a_number<Sample>();
-    }
-  }
-
-  template <class Sum>
-  static Sample mean(const Sum& sum, int count) {
-    if constexpr (std::integral<Sum>) {
-      constexpr Sum units = sizeof(Sample) > sizeof(Pixel) ? 256 : 1;
-      const Sum pixels = static_cast<Sum>(count);
-      return static_cast<Sample>((sum * units + pixels / 2) / pixels);
-    } else {
-      return Sample(sum / Sum(count));
-    }
-  }
-
-  /// Sums over Step rows, column by column; pixels without information are left out.
-  struct Columns {
-    std::array<std::uint16_t, block*Step> red = {}, green = {};
-    std::array<std::uint8_t, block*Step> count = {}, bright = {};
-
-    /// Adds `block` pixels of a row to the columns from `at` on.
-    void add(const std::uint8_t* from_red, const std::uint8_t* from_green, std::size_t at) {
-      std::uint16_t* __restrict reds = red.data() + at;
-      std::uint16_t* __restrict greens = green.data() + at;
-      std::uint8_t* __restrict counts = count.data() + at;
-      std::uint8_t* __restrict brights = bright.data() + at;
-      std::array<std::uint8_t, block> keep;  // 255: carries information, else 0
-      for (std::size_t i = 0; i < block; ++i) {
-        const auto top =
-            static_cast<std::uint8_t>(-int((from_red[i] == 255) | (from_green[i] == 255)));
-        const auto dark =
-            static_cast<std::uint8_t>(-int((from_red[i] == 0) | (from_green[i] == 0)));
-        brights[i] = static_cast<std::uint8_t>(brights[i] | top);
-        keep[i] = static_cast<std::uint8_t>(~(top | dark));
-      }
-      for (std::size_t i = 0; i < block; ++i) {
-        reds[i] = static_cast<std::uint16_t>(reds[i] + (from_red[i] & keep[i]));
-      }
-      for (std::size_t i = 0; i < block; ++i) {
-        greens[i] = static_cast<std::uint16_t>(greens[i] + (from_green[i] & keep[i]));
-      }
-      for (std::size_t i = 0; i < block; ++i) {
-        counts[i] = static_cast<std::uint8_t>(counts[i] - keep[i]);  // 255 is -1
-      }
-    }
-  };
-
-  /// `block` samples from column `col` on.
-  static void average_block(const Rows& rows, Index col, Sample* to_red, Sample* to_green) {
-    Columns columns;
-    for (Index k = 0; k < Step; ++k) {
-      for (std::size_t at = 0; at < block * Step; at += block) {
-        const Index from = k * rows.stride + col * Step + static_cast<Index>(at);
-        columns.add(rows.red + from, rows.green + from, at);
-      }
-    }
+  void write(std::uint16_t* to_red, std::uint16_t* to_green) const {
     std::uint8_t lost = 0;
-    for (std::size_t k = 0; k < block * Step; ++k) {
-      lost = static_cast<std::uint8_t>(lost | (columns.count[k] ^ Step));
+    for (std::size_t k = 0; k < samples * step(); ++k) {
+      lost = static_cast<std::uint8_t>(lost | (count_[k] ^ step()));
     }
     if (lost == 0) {  // a constant divisor needs no division
-      for (std::size_t j = 0; j < block; ++j) {
-        to_red[j] = mean(sum_of(columns.red, j), Step * Step);
+      const int all = static_cast<int>(step() * step());
+      for (std::size_t j = 0; j < samples; ++j) {
+        to_red[j] = sample_of<std::uint8_t>(sum_of(red_, j), all);
       }
-      for (std::size_t j = 0; j < block; ++j) {
-        to_green[j] = mean(sum_of(columns.green, j), Step * Step);
+      for (std::size_t j = 0; j < samples; ++j) {
+        to_green[j] = sample_of<std::uint8_t>(sum_of(green_, j), all);
       }
       return;
     }
-    for (std::size_t j = 0; j < block; ++j) {
-      const auto count = static_cast<int>(sum_of(columns.count, j));
-      const Sample none = sum_of(columns.bright, j) > 0 ? Sample(255 * 256) : Sample(0);
-      to_red[j] = count > 0 ? mean(sum_of(columns.red, j), count) : none;
-      to_green[j] = count > 0 ? mean(sum_of(columns.green, j), count) : none;
+    for (std::size_t j = 0; j < samples; ++j) {
+      const auto count = static_cast<int>(sum_of(count_, j));
+      const auto none = static_cast<std::uint16_t>(sum_of(bright_, j) > 0 ? 255 * 256 : 0);
+      to_red[j] = count > 0 ? sample_of<std::uint8_t>(sum_of(red_, j), count) : none;
+      to_green[j] = count > 0 ? sample_of<std::uint8_t>(sum_of(green_, j), count) : none;
     }
-  }
-  /// Sum over the columns of sample j.
-  template <class Cells>
-  [[gnu::always_inline]] static std::uint32_t sum_of(const Cells& cells, std::size_t j) {
-    return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
-      return (std::uint32_t(0) + ... + std::uint32_t(cells[j * sizeof...(K) + K]));
-    }
-    (std::make_index_sequence<std::size_t(Step)>{});
   }
 
-  Index cols_;
-  std::vector<Pixel> red_, green_;  // Step rows that lie elsewhere in the frame
+  /// Adds 64 pixels of a row to their columns, leaving out those without information.
+  static void add(const std::uint8_t* __restrict from_red,
+                  const std::uint8_t* __restrict from_green,
+                  std::uint16_t* __restrict reds,
+                  std::uint16_t* __restrict greens,
+                  std::uint8_t* __restrict counts,
+                  std::uint8_t* __restrict brights) {
+    std::array<std::uint8_t, samples> keep;  // 255: carries information, else 0
+    for (std::size_t i = 0; i < samples; ++i) {
+      const auto top =
+          static_cast<std::uint8_t>(-int((from_red[i] == 255) | (from_green[i] == 255)));
+      const auto dark = static_cast<std::uint8_t>(-int((from_red[i] == 0) | (from_green[i] == 0)));
+      brights[i] = static_cast<std::uint8_t>(brights[i] | top);
+      keep[i] = static_cast<std::uint8_t>(~(top | dark));
+    }
+    for (std::size_t i = 0; i < samples; ++i) {
+      reds[i] = static_cast<std::uint16_t>(reds[i] + (from_red[i] & keep[i]));
+    }
+    for (std::size_t i = 0; i < samples; ++i) {
+      greens[i] = static_cast<std::uint16_t>(greens[i] + (from_green[i] & keep[i]));
+    }
+    for (std::size_t i = 0; i < samples; ++i) {
+      counts[i] = static_cast<std::uint8_t>(counts[i] - keep[i]);  // 255 is -1
+    }
+  }
+
+  /// Sum over the columns of sample j.
+  template <class Cells>
+  [[gnu::always_inline]] std::uint32_t sum_of(const Cells& cells, std::size_t j) const {
+    if constexpr (Step > 0) {  // no loop, so that the one over the samples becomes vectors
+      return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
+        return (std::uint32_t(0) + ... + std::uint32_t(cells[j * Step + K]));
+      }
+      (std::make_index_sequence<std::size_t(Step)>{});
+    } else {
+      return std::accumulate(&cells[j * step()], &cells[j * step()] + step(), std::uint32_t(0));
+    }
+  }
+
+  int step_;
+  std::array<std::uint16_t, pixels> red_, green_;  // sums of each column
+  std::array<std::uint8_t, pixels> count_, bright_;
 };
+
+}  // namespace detail
+
+/// Writes the samples of a frame: means over step x step pixels, leaving out pixels that carry no
+/// information, in grey_scale_of<sample_t<Pixel>>(). If all are left out, the sample is the
+/// brightest value if one is saturated, else NaN if one is NaN, else 0, and carries no information
+/// either. False, and nothing written, for a step outside of 1..16 or where a grid has another
+/// size. Allocates nothing; O(rows cols), fastest for 8-bit pixels and steps up to 4.
+template <grid Red, grid Green, class Pixel = std::remove_cv_t<cell_t<Red>>>
+bool sample_frame(const Red& red,
+                  const Green& green,
+                  int step,
+                  const StridedView<sample_t<Pixel>>& to_red,
+                  const StridedView<sample_t<Pixel>>& to_green) {
+  const auto from_red = as_view(red);
+  const auto from_green = as_view(green);
+  const Index rows = to_red.rows(), cols = to_red.cols();
+  if (step < 1 || step > 16 || !same_size(from_red, from_green) || !same_size(to_red, to_green) ||
+      rows != from_red.rows() / step || cols != from_red.cols() / step) {
+    return false;
+  }
+  Index done = 0;  // samples of each row
+  if constexpr (std::same_as<Pixel, std::uint8_t>) {
+    const auto blocks = [&]<int Step>(detail::SampleBlock<Step> block) {
+      constexpr Index n = block.samples;
+      const Index across = (cols + n - 1) / n;
+      for (Index k = 0; k < rows * across; ++k) {
+        const Index row = k / across, first = (std::min)(k % across * n, cols - n);  // some twice
+        block(from_red, from_green, row * step, first * step, to_red.row(row) + first,
+              to_green.row(row) + first);
+      }
+      done = cols;
+    };
+    constexpr Index least = detail::SampleBlock<0>::samples;
+    if (cols >= least && to_red.col_stride() == 1 && to_green.col_stride() == 1) {
+      step == 1   ? blocks(detail::SampleBlock<1>(step))
+      : step == 2 ? blocks(detail::SampleBlock<2>(step))
+      : step == 3 ? blocks(detail::SampleBlock<3>(step))
+      : step == 4 ? blocks(detail::SampleBlock<4>(step))
+                  : blocks(detail::SampleBlock<0>(step));
+    }
+  }
+  for (Index k = 0; k < rows * (cols - done); ++k) {
+    const Index i = k / (cols - done), j = done + k % (cols - done);
+    std::tie(to_red(i, j), to_green(i, j)) =
+        detail::one_sample<Pixel>(from_red, from_green, i * step, j * step, step);
+  }
+  return true;
+}
 
 }  // namespace v0
 }  // namespace fingerpad

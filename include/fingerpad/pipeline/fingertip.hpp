@@ -6,163 +6,217 @@
 // only combines the methods; to use a single method, include that method's header.
 //
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
-//   auto touch = fingertip(ColorFrame(red, green), dots_px, side_dots_mm, pressure_mpa, time_s);
+//   auto touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s);
 //   if (touch.ok()) { ... touch.wrench.force_n ... }
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <type_traits>
 
 #include "fingerpad/pipeline/detail/fingertip_stages.hpp"
+#include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// Use one object per pad, and do not share it between threads: a frame changes its depth map,
-/// mask, dots and the memory of the object. A frame allocates nothing, throws nothing, and takes
-/// bounded time, O(rows cols) for the image and O(dots) for the rest.
-template <class Methods = FingertipMethods>
+/// One pad. The object is the state: copy it to return to a frame later; copies share what is
+/// constant of the pad. Use one object a thread. A frame allocates nothing, throws nothing, and
+/// takes bounded time, O(rows cols) for the image and O(dots) for the rest.
 class Fingertip {
-  using Executor = typename Methods::Executor;
-  static constexpr bool has_contact = Methods::has_contact;
-  static constexpr bool has_dots = has_contact && Methods::has_dots;
-  static constexpr bool has_look_up = has_dots && Methods::has_look_up;
-  static constexpr bool has_flat_area = has_look_up && Methods::has_flat_area;
-  static constexpr bool has_wrench = has_contact && Methods::has_wrench;
-
  public:
   /// Refuses bad parameters (parameter_error).
   explicit Fingertip(const FingertipOptions& options)
-      : image_(options),
-        light_(options),
-        region_(options),
-        dots_(options),
-        flat_area_(options),
-        look_up_(options),
-        balance_(options) {}
-
-  /// Processes one frame. `dots_px` and `side_dots_mm` may be any dot grid if no stage uses them.
-  /// `time_s` is that of the stick ratio (NaN: not known). `watch` is called at the end of each
-  /// stage.
-  template <class Red,
-            class Green,
-            dot_grid DotsPx,
-            spatial_dot_grid SideDots,
-            class Watch = detail::NoWatch>
-  FingertipResult operator()(const ColorFrame<Red, Green>& frame,
-                             const DotsPx& dots_px,
-                             const SideDots& side_dots_mm,
-                             double pressure_mpa,
-                             double time_s = not_a_number<double>(),
-                             Watch&& watch = {}) {
-    FingertipResult touch;
-    if (!image_.fits(frame) || !dots_.fits(dots_px)) {
-      return touch;
+      : pad_(std::make_shared<const Pad>(options.reference, options.sampling)),
+        camera_(sampled(options.camera, options.sampling)),
+        red_(pad_->samples.rows, pad_->samples.cols),
+        green_(red_),
+        depth_mm_(red_.rows, red_.cols),
+        pixel_status_(red_.rows, red_.cols),
+        mask_(red_.rows, red_.cols),
+        estimate_depth_(camera_,
+                        options.fluid,
+                        pad_->samples,
+                        {.window_px = options.smoothing_px, .step = options.sampling}) {
+    const FingertipOptions& o = options;
+    if (o.neighbour_light) {
+      take_off_light_.emplace(detail::light_of_samples(o));
     }
-    image_.measure(frame, executor_, touch.depth);
-    touch.neighbour_light = light_.take_off(image_);
-    watch(FingertipStage::depth);
-    if constexpr (!has_contact) {
-      touch.status = has_depth(touch) ? FingertipStatus::ok : FingertipStatus::partial;
-      return touch;
-    } else {
-      touch.contact = region_.find(image_);
-      watch(FingertipStage::contact);
-      balance_.measure(image_, region_, executor_);
-      watch(FingertipStage::heights);
-      executor_.both(
-          [&] {
-            dots_.follow(image_, region_, dots_px, time_s, touch, watch);
-            flat_area_.measure(image_, region_, touch);
-            look_up_.measure(dots_, touch, watch);
-          },
-          [&] { balance_.solve(side_dots_mm, pressure_mpa, touch, watch); });
-      dots_.conclude(touch, watch);
-      touch.status = status_of(touch);
-      return touch;
+    if (o.depth_alone) {
+      return;
+    }
+    find_contact_.emplace(camera_, red_.rows, red_.cols, detail::test_of_samples(o));
+    if (o.free_dots_mm.rows() * o.free_dots_mm.cols() > 0) {
+      dots_.emplace(o);
+    }
+    if (o.force_of_area || o.force_of_depth || o.shear) {
+      look_up_ =
+          detail::FingertipLookUp{o.force_of_area, o.force_of_depth, o.shear, o.shear_by_depth};
+    }
+    if (o.flat_area || o.force_of_area || (o.shear && !o.shear_by_depth)) {
+      find_flat_area_.emplace(camera_, red_.rows, red_.cols,
+                              o.flat_area.value_or(FlatAreaOptions{}));
+    }
+    if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
+      force_.emplace(camera_, *pad_, o);
     }
   }
 
-  /// The same without side dots.
-  template <class Red, class Green, dot_grid DotsPx>
-    requires(!has_wrench)
-  FingertipResult operator()(const ColorFrame<Red, Green>& frame,
-                             const DotsPx& dots_px,
-                             double pressure_mpa,
+  /// Processes one frame: red and green of 8 or 16 bit, the printed dots in px (NaN: not found),
+  /// the side dots in mm, MPa above the surrounding air, and the time in s of the stick ratio; NaN:
+  /// not known. What no stage takes may be left out.
+  template <grid Red,
+            grid Green,
+            dot_grid DotsPx = StridedView<const Point2<double>>,
+            spatial_dot_grid SideDots = StridedView<const Point3<double>>>
+  FingertipResult operator()(const Red& red,
+                             const Green& green,
+                             const DotsPx& dots_px = {},
+                             const SideDots& side_dots_mm = {},
+                             double pressure_mpa = not_a_number<double>(),
                              double time_s = not_a_number<double>()) {
-    return (*this)(frame, dots_px, StridedView<const Point3<double>>(), pressure_mpa, time_s);
+    FingertipResult touch;
+    const auto dots = as_view(dots_px);
+    if (!take_samples(as_view(red), as_view(green)) ||
+        (dots_ && !same_size(dots, dots_->seen.view()))) {
+      return touch;
+    }
+    if (dots_) {
+      dots_->read(dots, pad_->step);
+    }
+    measure_shape(touch);
+    if (dots_) {
+      dots_->follow(camera_, depth_mm_.view(), mask_.view(), time_s, touch);
+    }
+    if (look_up_ && touch.contact.ok()) {
+      (*look_up_)(touch);
+    }
+    if (force_) {
+      touch.wrench = force_->wrench(force_->map, side_dots_mm, pressure_mpa);
+    }
+    if (dots_) {
+      dots_->conclude(touch);
+    }
+    touch.status = judge(touch);
+    return touch;
   }
 
-  /// Depth of every pixel of the last frame; NaN where there is none. Interpolated from the samples
-  /// at the first call after a frame.
-  StridedView<const float> depth_mm() { return image_.samples.depth(image_.depth, image_.status); }
-  StridedView<const PixelStatus> pixel_status() {
-    return image_.samples.status(image_.depth, image_.status);
+  Index rows() const { return pad_->pixels.rows; }
+  Index cols() const { return pad_->pixels.cols; }
+  /// Depth of every pixel of the last frame, in mm; NaN where there is none. The cells of the views
+  /// are computed from the samples when they are read.
+  auto depth_mm() const {
+    return LazyView(rows(), cols(), [this](Index i, Index j) { return pixel(i, j).depth_mm; });
   }
-  /// Contact of every pixel of the last frame: 255 in contact, else 0.
-  StridedView<const std::uint8_t> contact_mask() requires(has_contact) {
-    return image_.samples.mask(region_.mask);
+  auto pixel_status() const {
+    return LazyView(rows(), cols(), [this](Index i, Index j) { return pixel(i, j).status; });
   }
-  /// State, contact and place in mm of each printed dot in the last frame.
-  StridedView<const DotState> dot_states() const requires(has_dots) { return dots_.states.view(); }
-  StridedView<const std::uint8_t> dots_in_contact() const requires(has_dots) {
-    return dots_.touching.view();
+  /// 255 in contact, else 0.
+  auto contact_mask() const {
+    return LazyView(rows(), cols(), [this](Index i, Index j) {
+      return mask_.view()(pad_->own_row(i), pad_->own_col(j));
+    });
   }
-  StridedView<const Point3<double>> dots_mm() const requires(has_dots) {
-    return dots_.at_mm.view();
+  /// State, contact and place in mm of each printed dot in the last frame; empty without dots.
+  StridedView<const DotState> dot_states() const {
+    return dots_ ? dots_->states.view() : StridedView<const DotState>();
+  }
+  StridedView<const std::uint8_t> dots_in_contact() const {
+    return dots_ ? dots_->touching.view() : StridedView<const std::uint8_t>();
+  }
+  StridedView<const Point3<double>> dots_mm() const {
+    return dots_ ? dots_->at_mm.view() : StridedView<const Point3<double>>();
   }
   /// How far each dot has slipped since the reference of the last answer; NaN where not known.
-  StridedView<const DotSlip<double>> dot_slips() const requires(has_dots) {
-    return dots_.slipped();
+  StridedView<const DotSlip<double>> dot_slips() const {
+    return dots_ ? dots_->stick_state.slips() : StridedView<const DotSlip<double>>();
   }
   /// Pull of the membrane on the rim at column `k` of rim_mm in the last frame, N/mm; NaN where it
   /// is not known.
-  Point3<double> rim_tension(Index k) const requires(has_wrench) {
-    return balance_.balance->wrench.rim_tension(k);
+  Point3<double> rim_tension(Index k) const {
+    return force_ ? force_->wrench.rim_tension(k) : detail::missing_point<double>();
   }
 
   /// Forgets the object: the next frame is treated as the first.
   void reset() {
-    if constexpr (has_dots) {
-      dots_.reset();
+    if (dots_) {
+      dots_->reset();
     }
   }
 
  private:
-  using Image = detail::FingertipImage<Methods>;
-  using Light = std::conditional_t<Methods::has_neighbour_light,
-                                   detail::FingertipLight<Methods>,
-                                   detail::NoFingertipStage>;
-  using Contact =
-      std::conditional_t<has_contact, detail::FingertipContact<Methods>, detail::NoFingertipStage>;
-  using Dots = std::conditional_t<has_dots, detail::FingertipDots, detail::NoFingertipStage>;
-  using FlatArea = std::
-      conditional_t<has_flat_area, detail::FingertipFlatArea<Methods>, detail::NoFingertipStage>;
-  using LookUp = std::
-      conditional_t<has_look_up, detail::FingertipLookUp<has_flat_area>, detail::NoFingertipStage>;
-  using Balance =
-      std::conditional_t<has_wrench, detail::FingertipBalance<Methods>, detail::NoFingertipStage>;
+  using Pad = detail::SampledPad<float>;
 
-  static bool has_depth(const FingertipResult& touch) {
-    return touch.depth.ok() && touch.neighbour_light == FrameStatus::ok;
+  detail::PixelDepth<float> pixel(Index i, Index j) const {
+    return pixel_depth(*pad_, depth_mm_.view(), pixel_status_.view(), i, j);
   }
-  FingertipStatus status_of(const FingertipResult& touch) const {
-    if (!has_depth(touch) || !touch.contact.ok()) {
-      return FingertipStatus::partial;  // neither contact nor its absence is certain
+
+  /// The samples of each row from the first of the pad to the last; all others stay 0. False for a
+  /// frame of another size.
+  template <class Red, class Green>
+  bool take_samples(const Red& red, const Green& green) {
+    static_assert(std::is_same_v<sample_t<cell_t<Red>>, std::uint16_t> &&
+                      std::is_same_v<cell_t<Red>, cell_t<Green>>,
+                  "a frame has cells of 8 or 16 bit; for others use DepthEstimator");
+    const Index step = pad_->step;
+    if (red.rows() != rows() || red.cols() != cols() || !same_size(red, green)) {
+      return false;
     }
-    const bool all = dots_.answers(touch) && look_up_.answers(touch) && balance_.answers(touch);
-    return !touch.contact.in_contact() ? FingertipStatus::no_contact
-           : all                       ? FingertipStatus::ok
-                                       : FingertipStatus::partial;
+    for (const detail::PadArea& to : pad_->spans) {
+      const detail::PadArea from = {to.row * step, to.col * step, step, to.cols * step};
+      (void)sample_frame(detail::crop(red, from), detail::crop(green, from), pad_->step,
+                         detail::crop(red_.view(), to), detail::crop(green_.view(), to));
+    }
+    return true;
   }
 
-  [[no_unique_address]] Executor executor_;
-  Image image_;
-  [[no_unique_address]] Light light_;
-  [[no_unique_address]] Contact region_;
-  [[no_unique_address]] Dots dots_;
-  [[no_unique_address]] FlatArea flat_area_;
-  [[no_unique_address]] LookUp look_up_;
-  [[no_unique_address]] Balance balance_;
+  void measure_shape(FingertipResult& touch) {
+    touch.depth =
+        estimate_depth_(red_.view(), green_.view(), depth_mm_.view(), pixel_status_.view());
+    if (take_off_light_) {
+      touch.neighbour_light = (*take_off_light_)(depth_mm_.view(), depth_mm_.view());
+    }
+    if (find_contact_) {
+      touch.contact = (*find_contact_)(depth_mm_.view(), mask_.view());
+    }
+    if (find_flat_area_ && touch.contact.in_contact()) {
+      touch.flat_area = (*find_flat_area_)(mask_.view(), depth_mm_.view());
+    }
+    if (force_) {
+      (void)force_->heights(depth_mm_.view(), mask_.view(), force_->map);
+    }
+  }
+
+  FingertipStatus judge(FingertipResult& touch) const {
+    touch.depth_in_doubt = !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok;
+    touch.contact_in_doubt = find_contact_ && !touch.contact.ok();
+    const bool sure = !touch.depth_in_doubt && !touch.contact_in_doubt;
+    if (sure && find_contact_ && !touch.contact.in_contact()) {
+      return FingertipStatus::no_contact;
+    }
+    touch.lacks_motion = dots_ && !touch.motion.has_pose();
+    touch.lacks_stick_ratio = dots_ && !is_finite(touch.stick.stick_ratio);
+    touch.lacks_look_up =
+        look_up_ && (look_up_->by_area || look_up_->by_depth) && !touch.normal.has_force();
+    touch.lacks_wrench = force_ && !touch.wrench.ok();
+    const bool all = !touch.lacks_motion && !touch.lacks_stick_ratio && !touch.lacks_look_up &&
+                     !touch.lacks_wrench;
+    return sure && all ? FingertipStatus::ok : FingertipStatus::partial;
+  }
+
+  std::shared_ptr<const Pad> pad_;
+  Camera<double> camera_;  // of the samples, like all below
+  detail::OwnedGrid<std::uint16_t> red_, green_;
+  detail::OwnedGrid<float> depth_mm_;
+  detail::OwnedGrid<PixelStatus> pixel_status_;
+  detail::OwnedGrid<std::uint8_t> mask_;
+  DepthEstimator<float> estimate_depth_;
+  std::optional<NeighbourLightCompensation<>> take_off_light_;
+  std::optional<ContactRegion<>> find_contact_;
+  std::optional<EquivalentFlatArea<>> find_flat_area_;
+  std::optional<detail::FingertipDots> dots_;
+  std::optional<detail::FingertipLookUp> look_up_;
+  std::optional<detail::FingertipForce> force_;
 };
 
 }  // namespace v0
