@@ -98,28 +98,36 @@ struct Parameter {
 
 namespace detail {
 
+/// The text that printf makes of its arguments, at most 511 characters: a chain of strings that are
+/// added takes a second to compile.
+template <class... Arguments>
+std::string print(const char* format, const Arguments&... arguments) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, arguments...);
+  return text;
+}
+
 /// "0.025", or all digits of a whole number.
 inline std::string written(double number, bool whole = false) {
-  char text[64];
-  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.9g", number);
-  return text;
+  return print(whole ? "%.0f" : "%.9g", number);
 }
 
 /// "finite and > 0", "<= 1", "in [0, 1]", "in (0, 1)", "odd, in [3, 109]".
 inline std::string written(const Range& range, bool whole) {
-  const std::string text = range.odd ? "odd, " : "";
-  const std::string min = written(range.min);
-  if (std::isfinite(range.max) && !std::isfinite(range.min)) {
-    return text + "<= " + written(range.max);
+  const char* odd = range.odd ? "odd, " : "";
+  const bool has_min = std::isfinite(range.min), has_max = std::isfinite(range.max);
+  if (has_min && has_max) {
+    return print("%sin %c%.9g, %.9g%c", odd, range.above_min ? '(' : '[', range.min, range.max,
+                 range.below_max ? ')' : ']');
   }
-  if (std::isfinite(range.max)) {
-    return text + (range.above_min ? "in (" : "in [") + min + ", " + written(range.max) +
-           (range.below_max ? ")" : "]");
+  if (has_max) {
+    return print("%s<= %.9g", odd, range.max);
   }
-  if (!std::isfinite(range.min)) {
-    return text + (whole ? "" : "finite");
+  if (has_min) {
+    return print("%s%s%s %.9g", odd, whole ? "" : "finite and ",
+                 range.above_min ? ">" : ">=", range.min);
   }
-  return text + (whole ? "" : "finite and ") + (range.above_min ? "> " : ">= ") + min;
+  return print("%s%s", odd, whole ? "" : "finite");
 }
 
 }  // namespace detail
@@ -128,8 +136,9 @@ inline std::string written(const Range& range, bool whole) {
 inline std::string check(const char* owner, std::initializer_list<Parameter> parameters) {
   for (const Parameter& p : parameters) {
     if (!p.good()) {
-      return std::string(owner) + ": " + p.name + " = " + detail::written(p.number, p.whole) +
-             ", must be " + detail::written(p.range, p.whole);
+      return detail::print("%s: %s = %s, must be %s", owner, p.name,
+                           detail::written(p.number, p.whole).c_str(),
+                           detail::written(p.range, p.whole).c_str());
     }
   }
   return "";
@@ -157,13 +166,9 @@ template <class Number>
 void expects(
     bool good, const char* owner, const char* name, const Number& given, const char* range) {
   if (!good) {
-    std::string number;
-    if constexpr (std::integral<Number>) {
-      number = std::to_string(given);
-    } else {
-      number = detail::written(static_cast<double>(value(given)));
-    }
-    refuse(std::string(owner) + ": " + name + " = " + number + ", must be " + range);
+    const Parameter p(name, given, finite_number);
+    refuse(detail::print("%s: %s = %s, must be %s", owner, name,
+                         detail::written(p.number, p.whole).c_str(), range));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
@@ -21,13 +22,6 @@ inline namespace v0 {
 /// Limit for collinear points: if their spread across the line is below a tenth of that along it,
 /// they do not determine a rotation.
 inline constexpr double collinear_spread_sq = 0.01;
-
-/// The best rigid motion, and whether the points determine it.
-template <scalar S = double>
-struct RigidFit {
-  Pose<S> pose = {};
-  bool determined = false;  ///< false: collinear points, or all equal; the pose is the identity
-};
 
 namespace detail::motion {
 
@@ -72,16 +66,15 @@ std::array<S, 4> dominant_vector(SmallMatrix<S, 4> a) {
 }
 
 /// The rotation that best maps `from` to `to`, from their cross-covariance about the two centers:
-/// row x is sum of weight from.x to, and so on. Returns false if the points do not determine it.
+/// row x is sum of weight from.x to, and so on. Empty if the points do not determine it.
 /// With singular values s1 >= s2 >= |s3| of the rows (s3 < 0 if a reflection would fit better), it
 /// is determined if
 ///   (s2 + s3) (s1 + s3) (s1 + s2) / (s1 + s2 + s3)^3 > collinear_spread_sq,
 /// where the left side is 1/4 for a flat disc and s2 / s1 for points near a line. O(1).
 template <scalar S>
-bool best_rotation(const Point3<S>& x,
-                   const Point3<S>& y,
-                   const Point3<S>& z,
-                   Rotation<S>& rotation) {
+std::optional<Rotation<S>> best_rotation(const Point3<S>& x,
+                                         const Point3<S>& y,
+                                         const Point3<S>& z) {
   using std::sqrt;
   const S size_sq = squared_norm(x) + squared_norm(y) + squared_norm(z);
   const S above = sqrt(S(3) * size_sq);  // no eigenvalue of Horn's matrix is below -above
@@ -98,18 +91,20 @@ bool best_rotation(const Point3<S>& x,
   // Product of its distances to the others: slope of l^4 - 2 size^2 l^2 - 8 det l + ...
   const S gaps = S(4) * largest * (square(largest) - size_sq) - S(8) * dot(x, cross(y, z));
   if (!(value(gaps) > value(S(8 * collinear_spread_sq) * largest * square(largest)))) {
-    return false;
+    return {};
   }
-  rotation = best;
-  return true;
+  return best;
 }
 
 }  // namespace detail::motion
 
-/// The best rigid motion of count points. from(k) and to(k) are points, weight(k) >= 0.
-/// O(count), no allocation.
+/// The best rigid motion of count points; empty if they do not determine it: on a line, or all
+/// equal. from(k) and to(k) are points, weight(k) >= 0. O(count), no allocation.
 template <scalar S, class From, class To, class Weight>
-RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight& weight) {
+std::optional<Pose<S>> fit_rigid(Index count,
+                                 const From& from,
+                                 const To& to,
+                                 const Weight& weight) {
   S mass = S(0);
   Point3<S> from_center = {S(0), S(0), S(0)}, to_center = from_center;
   for (Index k = 0; k < count; ++k) {
@@ -141,13 +136,14 @@ RigidFit<S> fit_rigid(Index count, const From& from, const To& to, const Weight&
     const scalar_real_t<S> tiny = 64 * epsilon<S>();
     return !(value(spread_sq) > tiny * tiny * value(squared_norm(center)));
   };
-  RigidFit<S> fit;
-  fit.determined = !is_roundoff(from_sq, from_center) && !is_roundoff(to_sq, to_center) &&
-                   detail::motion::best_rotation(x, y, z, fit.pose.rotation);
-  if (fit.determined) {
-    fit.pose.translation_mm = to_center - fit.pose.rotation(from_center);
+  if (is_roundoff(from_sq, from_center) || is_roundoff(to_sq, to_center)) {
+    return {};
   }
-  return fit;
+  const std::optional<Rotation<S>> best = detail::motion::best_rotation(x, y, z);
+  if (!best) {
+    return {};
+  }
+  return Pose<S>{*best, to_center - (*best)(from_center)};
 }
 
 }  // namespace v0

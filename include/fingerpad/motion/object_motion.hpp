@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -184,7 +185,9 @@ class ObjectMotion {
   }
 
   template <class From, class Weight>
-  RigidFit<S> fit(std::span<const Seen> dots, const From& from, const Weight& weight) const {
+  std::optional<Pose<S>> fit(std::span<const Seen> dots,
+                             const From& from,
+                             const Weight& weight) const {
     const auto seen = [&](Index k) -> const Seen& { return dots[static_cast<std::size_t>(k)]; };
     return fit_rigid<S>(
         static_cast<Index>(dots.size()), [&](Index k) { return from(seen(k)); },
@@ -193,7 +196,7 @@ class ObjectMotion {
 
   bool begin() {
     const auto itself = [](const Seen& s) { return s.dot_mm; };
-    if (fresh_ < 9 || !fit(fresh(), itself, [](const Seen&) { return S(1); }).determined) {
+    if (fresh_ < 9 || !fit(fresh(), itself, [](const Seen&) { return S(1); })) {
       return false;
     }
     Point3<S> sum = {S(0), S(0), S(0)};
@@ -227,34 +230,34 @@ class ObjectMotion {
 
   bool advance() {
     using std::sqrt;
-    const RigidFit<S> found = fit(
+    const std::optional<Pose<S>> found = fit(
         known(), [this](const Seen& s) { return map_[s.cell].place_mm; },
         [this](const Seen& s) {  // by the noise of the entry and of the dot
           return map_[s.cell].weight / (map_[s.cell].weight + S(1));
         });
-    if (known_ < 3 || !found.determined) {
+    if (known_ < 3 || !found) {
       return false;
     }
     S sum_sq = S(0);
     for (const Seen& s : known()) {
-      sum_sq = sum_sq + squared_norm(s.dot_mm - found.pose(map_[s.cell].place_mm));
+      sum_sq = sum_sq + squared_norm(s.dot_mm - (*found)(map_[s.cell].place_mm));
     }
     const S mean_sq = sum_sq / S(static_cast<double>(known_));
     // no membrane turns by 2.5 rad between two poses: exchanged rows and columns turn a patch over
     if (pitch_sq_ < S(16) * mean_sq ||
-        S(2.5) < angle_between(last_.pose.rotation, found.pose.rotation)) {
+        S(2.5) < angle_between(last_.pose.rotation, found->rotation)) {
       return false;
     }
     last_.dots_used = static_cast<Index>(known_);
-    last_.pose = found.pose;
-    last_.angles = zyx_angles(found.pose.rotation);
-    last_.position_mm = found.pose(start_mm_);
+    last_.pose = *found;
+    last_.angles = zyx_angles(found->rotation);
+    last_.position_mm = (*found)(start_mm_);
     last_.displacement_mm = last_.position_mm - start_mm_;
     last_.residual_rms_mm = S(0) < mean_sq ? sqrt(mean_sq) : S(0);
     for (Entry& entry : map_) {
       entry.weight = entry.left ? S(0) : entry.weight;
     }
-    const Pose<S> back = inverse(found.pose);
+    const Pose<S> back = inverse(*found);
     for (const Seen& s : known()) {
       Entry& entry = map_[s.cell];
       entry.weight = entry.weight + S(1);

@@ -57,10 +57,11 @@ class DepthPolynomial {
                 "rows of depth are computed in float or double: use newton_depth() for other "
                 "scalars");
   static constexpr bool is_float = sizeof(S) == 4;
-  static constexpr int degree = is_float ? 6 : 12;
+  static constexpr int degree = is_float ? 6 : 11;
   static constexpr int radial = is_float ? 3 : 8;
-  static constexpr int halley_steps = is_float ? 1 : 2;  ///< each cubes the error, .06 mm at first
-  static constexpr int exp_degree = (degree + 3) / 2;    ///< fewer terms, as delta k l_max is small
+  static constexpr int steps = is_float ? 1 : 2;  ///< Halley's cubes the error, .06 mm at first,
+                                                  ///< and Newton's after it squares what is left
+  static constexpr int exp_degree = (degree + 3) / 2;  ///< fewer terms, as delta k l_max is small
 
   // Higher powers of s carry less of the sum, so they need less of u.
   static constexpr int scatter_radial(int j) { return (std::max)(1, radial - j / 2); }
@@ -134,7 +135,7 @@ class DepthPolynomial {
     const S target = (kappa_ * red - green) * per_g;
     const S scaled = target * total;
     S s = scaled / (f[0] * (total - target) + scaled);
-    unrolled<halley_steps>([&](auto) __attribute__((always_inline)) {
+    unrolled<steps>([&](auto step) __attribute__((always_inline)) {
       S bend = f[degree - 1];  // half the second derivative
       S slope = f[degree - 1];
       S sum = f[degree - 1] * s + f[degree - 2];
@@ -146,7 +147,7 @@ class DepthPolynomial {
         slope = slope * s + sum;
       });
       const S miss = sum * s - target;
-      s = s - miss * slope / (slope * slope - miss * bend);
+      s = s - (step == 0 ? miss * slope / (slope * slope - miss * bend) : miss / slope);
     });
     return {s * l_max_mm_, target, total};
   }
