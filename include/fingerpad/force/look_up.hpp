@@ -161,8 +161,9 @@ namespace detail {
 
 /// 3 x^2 - 2 x^3 from 0 at x = 0 to 1 at x = 1, level at both, and 1 beyond; and its slope.
 template <scalar S>
-S smooth_step(const S& x) {
-  return value(x) < 1 ? x * x * (S(3) - S(2) * x) : S(1);
+S smooth_step(const S& share) {
+  const S x = value(share) < 1 ? share : S(1);
+  return x * x * (S(3) - S(2) * x);
 }
 template <scalar S>
 S smooth_step_slope(const S& x) {
@@ -170,10 +171,6 @@ S smooth_step_slope(const S& x) {
 }
 
 /// Finite, but impossible for the contact of a fingertip.
-template <scalar S>
-bool is_wild(const S& measure_or_force) {
-  return is_finite(measure_or_force) && !is_plausible(measure_or_force);
-}
 template <scalar S>
 bool is_wild(const Point2<S>& displacement_mm) {
   return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;
@@ -219,17 +216,16 @@ class NormalForce {
     if (!is_finite(measure) || !is_finite(force)) {
       return result;
     }
+    const bool wild = !is_plausible(measure) || !is_plausible(force) ||
+                      (value(curve_.per_mm_sq) != 0 && detail::is_wild(displacement_mm)) ||
+                      (value(curve_.per_rad_sq) != 0 && detail::is_wild_rotation(rotation_rad));
     result.force_n = value(force) > 0 ? force : S(0);
-    result.status =
-        value(measure) <= 0 ? ForceStatus::no_contact
-        : detail::is_wild(measure) || detail::is_wild(force) ||
-                (value(curve_.per_mm_sq) != 0 && detail::is_wild(displacement_mm)) ||
-                (value(curve_.per_rad_sq) != 0 && detail::is_wild_rotation(rotation_rad))
-            ? ForceStatus::implausible
-        : value(force) < 0                    ? ForceStatus::held_at_zero
-        : value(measure) < value(curve_.from) ? ForceStatus::below_range
-        : value(measure) > value(curve_.to)   ? ForceStatus::beyond_range
-                                              : ForceStatus::measured;
+    result.status = value(measure) <= 0                   ? ForceStatus::no_contact
+                    : wild                                ? ForceStatus::implausible
+                    : value(force) < 0                    ? ForceStatus::held_at_zero
+                    : value(measure) < value(curve_.from) ? ForceStatus::below_range
+                    : value(measure) > value(curve_.to)   ? ForceStatus::beyond_range
+                                                          : ForceStatus::measured;
     if (value(curve_.residual_sd_n) >= 0) {
       result.variance_n2 = variance_n2(measure, at, gain, measure_variance);
     }
@@ -246,14 +242,11 @@ class NormalForce {
 
   /// Treats NaN like no contact: the measure is checked.
   Place place_of(const S& measure) const {
-    Place at{value(measure) > 0 ? measure : S(0), S(0), S(0), S(0)};
-    if (value(at.within) > value(curve_.to)) {
-      at.within = curve_.to;
-      at.beyond = measure - curve_.to;
-    }
-    at.faded = detail::smooth_step(at.within * one_over_from_);
-    at.plain_n = curve_.force_n(at.within) + end_slope_ * at.beyond;
-    return at;
+    const S above = value(measure) > 0 ? measure : S(0);
+    const bool past = value(above) > value(curve_.to);
+    const S within = past ? curve_.to : above, beyond = past ? above - curve_.to : S(0);
+    return {within, beyond, detail::smooth_step(within * one_over_from_),
+            curve_.force_n(within) + end_slope_ * beyond};
   }
 
   S gain_of(const Point2<S>& displacement_mm, const S& rotation_rad) const {
@@ -487,11 +480,11 @@ class Shear {
   /// contact.
   ForceStatus status_of(const S& measure, const ShearLaw<S>& law, const S& size, bool wild) const {
     const bool tiny = value(law.exponent) != 0 && value(S(100) * measure) < value(map_.reference);
-    return !(value(measure) > 0)              ? ForceStatus::no_contact
-           : wild || detail::is_wild(measure) ? ForceStatus::implausible
-           : value(size) > value(law.to)      ? ForceStatus::beyond_range
-           : tiny                             ? ForceStatus::below_range
-                                              : ForceStatus::measured;
+    return !(value(measure) > 0)            ? ForceStatus::no_contact
+           : wild || !is_plausible(measure) ? ForceStatus::implausible
+           : value(size) > value(law.to)    ? ForceStatus::beyond_range
+           : tiny                           ? ForceStatus::below_range
+                                            : ForceStatus::measured;
   }
 
   ShearMap<S> map_;
