@@ -568,10 +568,10 @@ TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
   CHECK(test::begins_with(text_of(fit), "no threshold separates"));
   CHECK(fit.precision() < 0.5);
 
-  PreslipCalibration<> none(2), all(2);
-  none.add(std::array{finger(1, 1, 2), finger(1, 1, 2)}, false);
+  PreslipCalibration<> unmarked(2), all(2);
+  unmarked.add(std::array{finger(1, 1, 2), finger(1, 1, 2)}, false);
   all.add(std::array{finger(1, 1, 2), finger(1, 1, 2)}, true);
-  CHECK(refusal([&] { (void)none.fit(); }) ==
+  CHECK(refusal([&] { (void)unmarked.fit(); }) ==
         "PreslipCalibration: marked samples = 0, must be >= 1");
   CHECK(refusal([&] { (void)all.fit(); }) ==
         "PreslipCalibration: samples without a mark = 0, must be >= 1");
