@@ -172,24 +172,7 @@ class Wrench {
     requires(membrane_shape<Shape, S>)
   WrenchResult<S>
   operator()(const Shape& shape, const Dots& side_dots_mm, const S& pressure_mpa) {
-    WrenchResult<S> result = begun(side_dots_mm);
-    const bool gauged = !(pressure_mpa != pressure_mpa);
-    if (result.status != WrenchStatus::ok) {
-      return result;
-    }
-    if (gauged ? !is_pressure(pressure_mpa) : !options_.modulus_n_per_mm) {
-      result.status = WrenchStatus::bad_pressure;
-      return result;
-    }
-    result.status = find_summit(shape);
-    const bool by_shape = result.status == WrenchStatus::ok;
-    if (result.status == WrenchStatus::no_contact) {
-      result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
-    } else if (by_shape || (result.status == WrenchStatus::no_level_line && gauged &&
-                            options_.modulus_n_per_mm)) {
-      solve(as_view(side_dots_mm), pressure_mpa, by_shape, result);
-    }
-    return result;
+    return solved(as_view(side_dots_mm), pressure_mpa, [&] { return find_summit(shape); });
   }
 
   /// The same without a shape: the modulus of the options turns the pulls at the rim into forces;
@@ -197,58 +180,61 @@ class Wrench {
   /// modulus must be fresh and the inclination of the stress-free rim given.
   template <spatial_dot_grid Dots>
   WrenchResult<S> by_modulus(const Dots& side_dots_mm, const S& pressure_mpa) {
-    WrenchResult<S> result = begun(side_dots_mm);
     if (!options_.modulus_n_per_mm) {
-      result.status = WrenchStatus::refused;
-    } else if (result.status == WrenchStatus::ok && !is_pressure(pressure_mpa)) {
-      result.status = WrenchStatus::bad_pressure;
-    } else if (result.status == WrenchStatus::ok) {
-      solve(as_view(side_dots_mm), pressure_mpa, false, result);
+      modulus_ = not_a_number<S>();
+      return {};
     }
-    return result;
+    const S given = pressure_mpa == pressure_mpa ? pressure_mpa : S(0);
+    return solved(as_view(side_dots_mm), given, [] { return WrenchStatus::no_level_line; });
   }
 
  private:
   /// A line from the rim toward the middle of the contact, and the free membrane beside the edge of
   /// the contact in sums for a fit of its lean: r sin(inclination) less that of the object at the
-  /// edge. The rows are (1, rho, rho beside), rho = r^2 - edge^2, beside = r - edge.
+  /// edge. The rows are (1, rho, rho beside, lean), rho = r^2 - edge^2, beside = r - edge.
   struct Line {
     Point2<S> outward;  ///< unit vector from the middle to the rim
     S length, edge;     ///< from the middle to the rim, to where the contact begins; 0: a summit
-    S sums[3][3], leans[3], lean_beside;
+    S sums[4][4], lean_beside;
   };
 
-  template <class Dots>
-  WrenchResult<S> begun(const Dots& side_dots_mm) {
-    const auto dots = as_view(side_dots_mm);
+  /// Solves the frame from two of shape, pressure and modulus. `find` finds the line A_g.
+  template <class Dots, class Find>
+  WrenchResult<S> solved(const Dots& dots, const S& pressure_mpa, const Find& find) {
     WrenchResult<S> result;
-    const bool fits = dots.rows() == 1 && dots.cols() == side_dots();
-    result.status = fits ? WrenchStatus::ok : WrenchStatus::refused;
     modulus_ = not_a_number<S>();
-    return result;
-  }
-
-  /// Solves the frame from two of shape, pressure and modulus.
-  template <class Dots>
-  void solve(const Dots& dots, const S& pressure_mpa, bool by_shape, WrenchResult<S>& result) {
-    result.by_modulus = !by_shape;
+    if (dots.rows() != 1 || dots.cols() != side_dots()) {
+      return result;
+    }
+    const bool gauged = !(pressure_mpa != pressure_mpa), calibrated(options_.modulus_n_per_mm);
+    result.status = WrenchStatus::bad_pressure;
+    if (gauged ? !is_pressure(pressure_mpa) : !calibrated) {
+      return result;
+    }
+    result.status = find();
+    result.by_modulus = result.status == WrenchStatus::no_level_line && gauged && calibrated;
+    if (result.status == WrenchStatus::no_contact) {
+      result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
+    }
+    if (result.status != WrenchStatus::ok && !result.by_modulus) {
+      return result;
+    }
     result.status = WrenchStatus::bad_side_dots;
     if (!rim_.read(dots, result.faults)) {
-      return;
+      return result;
     }
-    if (!by_shape) {
+    if (result.by_modulus) {
       find_pulls(pressure_mpa / *options_.modulus_n_per_mm);
       add_up(pressure_mpa, *options_.modulus_n_per_mm, result);
-      return;
+      return result;
     }
     result.summit_area_mm2 = summit_area_;
     const S load = balanced_load();
-    if (!(value(load) > 0)) {
-      return;
+    if (value(load) > 0) {
+      const S modulus = gauged ? pressure_mpa / load : *options_.modulus_n_per_mm;
+      add_up(gauged ? pressure_mpa : modulus * load, modulus, result);
     }
-    const bool gauged = !(pressure_mpa != pressure_mpa);
-    const S modulus = gauged ? pressure_mpa / load : *options_.modulus_n_per_mm;
-    add_up(gauged ? pressure_mpa : modulus * load, modulus, result);
+    return result;
   }
 
   bool is_pressure(const S& mpa) const {
@@ -322,13 +308,11 @@ class Wrench {
     using std::sqrt;
     const std::size_t n = rim_.size();
     Point3<S> area = {S(0), S(0), S(0)}, middle = area;
-    S corners = S(0);
     for (std::size_t k = 0; k < n; ++k) {
       const Point3<S>&a = summit_[k], &b = summit_[rim_.after(k)];
       const S corner = a.x * b.y - a.y * b.x;
       area += cross(a, b) / S(2);
       middle += corner * Point3<S>{(a.x + b.x) / S(3), (a.y + b.y) / S(3), (a.z + b.z) / S(2)};
-      corners += corner;
       const std::size_t next = rim_.after(rim_.after(k));
       rough_[k] = rim_.pull(k).z - rim_.pull(rim_.after(next)).z +
                   S(3) * (rim_.pull(next).z - rim_.pull(rim_.after(k)).z);
@@ -337,7 +321,7 @@ class Wrench {
     if (!(value(area.z) > 0)) {
       return of_rim;
     }
-    middle = middle / corners;
+    middle = middle / (S(2) * area.z);
     Point3<S> of_patch = cross(middle, force);
     of_patch = of_patch + ((of_rim.z - of_patch.z) / area.z) * area;
     const auto median = rough_.begin() + static_cast<std::ptrdiff_t>(n / 2);
@@ -503,12 +487,9 @@ class Wrench {
         continue;
       }
       const S lean = r * sine(-dot(slope, line.outward)) - line.edge * sine(object_rise);
-      const S row[3] = {S(1), rho, rho * beside};
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          line.sums[i][j] += row[i] * row[j];
-        }
-        line.leans[i] += row[i] * lean;
+      const S row[4] = {S(1), rho, rho * beside, lean};
+      for (std::size_t n = 0; n < 16; ++n) {
+        line.sums[n / 4][n % 4] += row[n / 4] * row[n % 4];
       }
       line.lean_beside += lean * beside;
     }
@@ -524,8 +505,7 @@ class Wrench {
       return l.sums[i][j] - l.sums[0][i] * l.sums[0][j] / n;
     };
     const S xx = about_mean(1, 1), xy = about_mean(1, 2), yy = about_mean(2, 2);
-    const S x = l.leans[1] - l.leans[0] * l.sums[0][1] / n;
-    const S y = l.leans[2] - l.leans[0] * l.sums[0][2] / n;
+    const S x = about_mean(1, 3), y = about_mean(2, 3);
     const S determinant = xx * yy - xy * xy;
     if (determinant > S(1e-10) * xx * yy) {
       rise += (x * yy - y * xy) / determinant;
@@ -541,8 +521,8 @@ class Wrench {
   S edge_of(const Line& l, const S& growth) const {
     using std::sqrt;
     const S n = l.sums[0][0], rho = l.sums[0][1], rho_sq = l.sums[1][1];
-    const S lean = l.leans[0] + growth * l.lean_beside;
-    const S lean_rho = l.leans[1] + growth * l.leans[2];
+    const S lean = l.sums[0][3] + growth * l.lean_beside;
+    const S lean_rho = l.sums[1][3] + growth * l.sums[2][3];
     const S found_sq =
         square(l.edge) - (rho_sq * lean - rho * lean_rho) / (n * lean_rho - rho * lean);
     const S found = value(n) >= 3 && value(found_sq) > 0 ? sqrt(found_sq) : l.edge;
