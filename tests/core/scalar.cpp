@@ -26,11 +26,6 @@ static_assert(std::same_as<scalar_real_t<float>, float>);
 static_assert(std::same_as<scalar_real_t<Digits50>, Digits50>);
 static_assert(std::same_as<scalar_real_t<Dual<float>>, float>);
 
-static_assert(std::same_as<real_of_t<std::uint8_t>, double>);
-static_assert(std::same_as<real_of_t<const std::uint16_t&>, double>);
-static_assert(std::same_as<real_of_t<const float&>, float>);
-static_assert(std::same_as<real_of_t<long double>, long double>);
-static_assert(std::same_as<real_of_t<Dual<double>>, Dual<double>>);
 
 // Functions without mathematics are usable at compile time.
 static_assert(value(2.5) == 2.5 && square(3.0f) == 9.0f);

@@ -840,7 +840,7 @@ double mm_per_level(const Pad& pad, Index i, Index j, double l) {
 
 template <class Pixel>
 PixelStatus reason(const Pixel& red, const Pixel& green) {
-  if (!is_finite(real_of_t<Pixel>(red)) || !is_finite(real_of_t<Pixel>(green))) {
+  if (!is_finite(static_cast<double>(red)) || !is_finite(static_cast<double>(green))) {
     return PixelStatus::not_a_number;
   }
   const Pixel top = test::stored<Pixel>(255);

@@ -4,6 +4,9 @@
 // One algorithm on grids in the form of the library's own: a constrained entry point, then a loop
 // on views. Its weights differ from cell to cell, so a transposed, shifted or repeated cell changes
 // the sum. The result must be the same to the last bit on every grid type.
+#include <concepts>
+#include <type_traits>
+
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 
@@ -28,7 +31,9 @@ S weighted_sum_of_view(View v) {
   return sum;
 }
 
-template <fingerpad::grid G, fingerpad::scalar S = fingerpad::real_of_t<fingerpad::cell_t<G>>>
+template <fingerpad::grid G,
+          fingerpad::scalar S =
+              std::conditional_t<std::integral<fingerpad::cell_t<G>>, double, fingerpad::cell_t<G>>>
 S weighted_sum(const G& g) {
   return weighted_sum_of_view<S>(fingerpad::as_view(g));
 }

@@ -103,11 +103,5 @@ constexpr S square(const S& x) {
   return x * x;
 }
 
-/// The scalar in which cells of this type are computed: double for integers, else the cell type
-/// itself.
-template <class Cell>
-using real_of_t =
-    std::conditional_t<std::integral<std::remove_cvref_t<Cell>>, double, std::remove_cvref_t<Cell>>;
-
 }  // namespace v0
 }  // namespace fingerpad

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Matrices of a few columns, for every scalar: eigenvectors (Jacobi rotations), solution and
-// variances of normal equations (equilibrated Cholesky), least squares by Householder reflections.
-// Eigen's factorisations are blocked, which gains nothing here and takes several times as long to
-// compile.
+// Matrices of a few columns, for every scalar: solution and variances of normal equations
+// (equilibrated Cholesky), least squares by Householder reflections. Eigen's factorisations are
+// blocked, which gains nothing here and takes several times as long to compile.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -34,58 +32,6 @@ constexpr SmallMatrix<S, N> zero_matrix() {
   SmallMatrix<S, N> all;
   all.fill(zeros<S, N>());
   return all;
-}
-
-/// Tangent of the rotation that diagonalises the symmetric 2x2 block {pp, pq; pq, qq}; at most 1 in
-/// magnitude.
-template <scalar S>
-S jacobi_tangent(const S& pp, const S& qq, const S& pq) {
-  using std::sqrt;
-  const S gap = qq - pp;
-  const S theta = gap / (pq + pq);
-  if (!(value(theta * theta) * epsilon<S>() * epsilon<S>() <= 1)) {  // too large, or pq is 0
-    return value(gap) == 0 ? S(0) : pq / gap;
-  }
-  const S root = sqrt(theta * theta + S(1));
-  return S(1) / (value(theta) < 0 ? theta - root : theta + root);
-}
-
-/// Eigenvalues, largest first, and their eigenvectors in the same order.
-template <scalar S>
-struct Eigen3 {
-  std::array<S, 3> value;
-  std::array<Point3<S>, 3> vector;
-};
-
-/// Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations. A sweep squares the
-/// size of the elements beside the diagonal; derivatives settle one sweep after the values.
-template <scalar S>
-Eigen3<S> eigenvectors(SmallMatrix<S, 3> a) {
-  using std::sqrt;
-  std::array<Point3<S>, 3> v = {{{S(1), S(0), S(0)}, {S(0), S(1), S(0)}, {S(0), S(0), S(1)}}};
-  bool settled = false;
-  for (int sweep = 0; sweep < 12 && !settled; ++sweep) {
-    settled = true;
-    for (std::size_t r = 3; r-- > 0;) {  // r stays, p and q rotate
-      const std::size_t p = r == 0 ? 1 : 0, q = 3 - p - r;
-      const S t = jacobi_tangent(a[p][p], a[q][q], a[p][q]);
-      settled = settled && value(t * t) <= square(epsilon<S>());
-      const S c = S(1) / sqrt(S(1) + t * t), s = t * c;
-      const S shift = t * a[p][q];
-      a[p][p] = a[p][p] - shift;
-      a[q][q] = a[q][q] + shift;
-      a[p][q] = a[q][p] = S(0);
-      const S rp = c * a[r][p] - s * a[r][q], rq = s * a[r][p] + c * a[r][q];
-      a[r][p] = a[p][r] = rp;
-      a[r][q] = a[q][r] = rq;
-      const Point3<S> vp = c * v[p] - s * v[q];
-      v[q] = s * v[p] + c * v[q];
-      v[p] = vp;
-    }
-  }
-  std::array<std::size_t, 3> k = {0, 1, 2};
-  std::sort(k.begin(), k.end(), [&](std::size_t i, std::size_t j) { return a[j][j] < a[i][i]; });
-  return {{a[k[0]][k[0]], a[k[1]][k[1]], a[k[2]][k[2]]}, {v[k[0]], v[k[1]], v[k[2]]}};
 }
 
 /// Cholesky factor of normal equations A^T A, scaled to a unit diagonal so that units do not
