@@ -19,9 +19,6 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Signed, as Eigen::Index: strides may be negative and differences need no cast.
-using Index = std::ptrdiff_t;
-
 namespace detail {
 template <class G> concept has_size_members = requires(const G& g) {
   g.rows();

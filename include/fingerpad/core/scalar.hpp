@@ -7,6 +7,7 @@
 // write constants as S(2) or from scalar_traits, and branch on value(x).
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -29,6 +30,10 @@
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// A count or a place. Signed, as Eigen::Index: strides may be negative and differences need no
+/// cast.
+using Index = std::ptrdiff_t;
 
 /// What the library needs to know about a number type beyond its arithmetic; specialise it for your
 /// own type.

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {

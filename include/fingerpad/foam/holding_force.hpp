@@ -19,7 +19,6 @@
 #include <string>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/preslip.hpp"
 

@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/foam/finger_sample.hpp"
 
