@@ -82,7 +82,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const Count& smoothing_px,
                                 const Number& dot_radius_px) {
   Options options{camera, fluid, reference};
-  options.sampling = 1;  // depth at every pixel, because Python reads whole arrays
+  options.sampling = 1;         // depth at every pixel, because Python reads whole arrays
+  options.flat_area.emplace();  // also without a curve
   const Dots dots(free_dots_mm, "free_dots_mm"), rim(rim_mm, "rim_mm");
   options.free_dots_mm = dots.view();
   options.rim_mm = rim.view();

@@ -157,6 +157,22 @@ TEST_CASE("a fingertip without stages gives the same depth and contact", "[chain
   CHECK_FALSE(is_finite(contact.rim_tension(0)));
 }
 
+TEST_CASE("at every pixel the depth is that of the estimator, bit for bit", "[chain]") {
+  const auto options = depth_alone(1);
+  Fingertip tip(options);
+  const Inputs in = frames()[1].view();
+  const auto found = depth_of(tip, in);
+  fingerpad::DepthEstimator<float> estimate(options.camera, options.fluid, options.reference,
+                                            {.window_px = options.smoothing_px});
+  test::Image<float> expected(tip.rows(), tip.cols(), 0.0F);
+  CHECK(estimate(in.red, in.green, expected).ok());
+  bool same = true;
+  for (std::size_t k = 0; k < found.cells.size(); ++k) {
+    same = same && test::same_bits(found.cells[k], expected.cells[k]);
+  }
+  CHECK(same);
+}
+
 TEST_CASE("the flat area can be asked for without a curve", "[chain]") {
   const Run whole(frames().options());
   FingertipOptions options = contact_and_depth(3);
