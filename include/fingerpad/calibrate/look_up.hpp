@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -270,13 +269,6 @@ void judge(const FitProblem<S>& of, const FitMatrix<S>& jacobian, ModelFit<S>& f
   fit.covariance = variance * Eigen::Map<const FitMatrix<S>>(by_unit.data(), p, p);
 }
 
-template <scalar S>
-void expects_enough(const FitProblem<S>& of, Index parameters) {
-  const Index n = of.measured.size();
-  expects(n > parameters, of.owner, "usable samples", static_cast<long long>(n),
-          ("> " + std::to_string(parameters) + ", the number of parameters").c_str());
-}
-
 /// Fits from `start`. The first step solves a model that is linear in its parameters. Refuses too
 /// few samples, and a parameter of whose column less than `min_independence` is independent of the
 /// columns before it.
@@ -289,7 +281,8 @@ ModelFit<S> fit_model(const FitProblem<S>& of,
   constexpr double huber_threshold = 1.345;  // in standard deviations of a sample
   require(of.options);
   const Index n = of.measured.size(), p = start.size();
-  expects_enough(of, p);
+  expects(n > p, of.owner, "usable samples", static_cast<long long>(n),
+          ("> " + std::to_string(p) + ", the number of parameters").c_str());
   ModelFit<S> fit;
   fit.parameters = start;
   fit.weights = FitVector<S>::Constant(n, S(1));
@@ -329,9 +322,17 @@ ModelFit<S> fit_model(const FitProblem<S>& of,
   return fit;
 }
 
-/// "; " and the likely cause, for refusals.
-inline std::string cause_of(const char* mistake) {
-  return mistake == nullptr ? std::string() : std::string("; ") + mistake;
+/// "; " and the likely cause, for refusals; for a rotated gauge with its angle and standard error.
+template <scalar S>
+std::string cause_of(const char* mistake, const std::array<S, 2>& angle) {
+  const auto degrees = [](const S& rad) {
+    return std::to_string(std::lround(57.29577951308232 * static_cast<double>(value(rad))));
+  };
+  const std::string likely = mistake == nullptr ? std::string() : std::string("; ") + mistake;
+  return mistake != cause::gauge_rotated ? likely
+         : is_finite(angle[1])           ? likely + " (rotated by " + degrees(angle[0]) + " +- " +
+                                     degrees(angle[1]) + " degrees)"
+                               : likely + " (displace in several directions to obtain the angle)";
 }
 
 /// Refuses a model that does not explain the samples.
@@ -381,11 +382,6 @@ struct UsableSamples {
     }
   }
 };
-
-template <scalar S>
-bool has_finite_motion(const ForceSample<S>& s) {
-  return is_finite(s.displacement_mm) && is_finite(s.rotation_rad);
-}
 
 template <scalar S>
 void add_residuals(const FitVector<S>& measured,
@@ -501,36 +497,31 @@ auto product_model(const FitMatrix<S>& columns, const FitMatrix<S>& moves) {
 template <scalar S>
 struct CurveFitter {
   FitVector<S> forces;
-  FitMatrix<S> basis;   ///< G_0, G_1, ... of each sample
-  FitMatrix<S> moves;   ///< |d|^2, theta^2
-  FitMatrix<S> powers;  ///< column k: coefficients of the powers of the measure in G_k
-  std::vector<std::string> move_names;
+  FitMatrix<S> terms;  ///< coefficients of t^0, t^1, ... in each G_k
+  FitMatrix<S> basis;  ///< G_0, G_1, ... of each sample
+  FitMatrix<S> moves;  ///< |d|^2, theta^2 of each sample
   FitOptions options;
+  std::vector<std::string> move_names = {};
 
   CurveFitter(const std::vector<ForceSample<S>>& samples,
               const S& to,
               const CurveOptions& curve,
               const FitOptions& fit_options)
       : options(fit_options) {
-    const Index n = static_cast<Index>(samples.size()), size = curve.degree + 1;
+    const Index n = static_cast<Index>(samples.size());
+    const int size = curve.degree + 1;
     forces.resize(n);
-    basis.setZero(n, size);
-    moves.resize(n, (curve.displaced ? 1 : 0) + (curve.rotated ? 1 : 0));
-    powers.resize(size, size);
-    for (int k = 0; k < size; ++k) {
-      S scale(1);
-      for (int i = 0; i < size; ++i) {
-        powers(i, k) = S(rising_term(curve.degree, k, i)) / scale;
-        scale = scale * to;
-      }
+    terms.resize(size, size);
+    for (int k = 0; k < size * size; ++k) {
+      terms(k % size, k / size) = S(rising_term(curve.degree, k / size, k % size));
     }
+    FitMatrix<S> powers = FitMatrix<S>::Constant(n, size, S(1));
+    moves.resize(n, (curve.displaced ? 1 : 0) + (curve.rotated ? 1 : 0));
     for (Index i = 0; i < n; ++i) {
       const ForceSample<S>& s = samples[static_cast<std::size_t>(i)];
       forces(i) = s.normal_force_n;
-      for (int k = 0; k < size; ++k) {
-        for (int power = curve.degree; power >= 0; --power) {
-          basis(i, k) = basis(i, k) * (s.measure / to) + S(rising_term(curve.degree, k, power));
-        }
+      for (int k = 1; k < size; ++k) {
+        powers(i, k) = powers(i, k - 1) * (s.measure / to);
       }
       if (curve.displaced) {
         moves(i, 0) = squared_norm(s.displacement_mm);
@@ -539,20 +530,13 @@ struct CurveFitter {
         moves(i, moves.cols() - 1) = square(s.rotation_rad);
       }
     }
+    basis = powers.lazyProduct(terms);
     if (curve.displaced) {
       move_names.emplace_back("per_mm_sq");
     }
     if (curve.rotated) {
       move_names.emplace_back("per_rad_sq");
     }
-  }
-
-  FitMatrix<S> some(const FitMatrix<S>& of, const std::vector<int>& columns) const {
-    FitMatrix<S> chosen(of.rows(), static_cast<Index>(columns.size()));
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      chosen.col(static_cast<Index>(c)) = of.col(columns[c]);
-    }
-    return chosen;
   }
 
   FitProblem<S> problem(const std::vector<int>& columns, bool moved) const {
@@ -562,20 +546,18 @@ struct CurveFitter {
     }
     names.insert(names.end(), move_names.begin(), move_names.end());
     const FitMatrix<S> with = moved ? moves : FitMatrix<S>(forces.size(), 0);
-    return {"fit_normal_force", names, forces, product_model<S>(some(basis, columns), with),
+    return {"fit_normal_force", names, forces, product_model<S>(basis(Eigen::all, columns), with),
             options};
   }
 
   /// First without the factor, then with it.
   ModelFit<S> operator()(const std::vector<int>& columns) const {
     const Index m = static_cast<Index>(columns.size());
-    const ModelFit<S> plain = fit_model<S>(problem(columns, false), FitVector<S>::Zero(m));
-    if (moves.cols() == 0) {
-      return plain;
-    }
-    FitVector<S> start = FitVector<S>::Zero(m + moves.cols());
+    FitVector<S> start = FitVector<S>::Zero(m);
+    const ModelFit<S> plain = fit_model(problem(columns, false), start);
+    start = FitVector<S>::Zero(m + moves.cols());
     start.head(m) = plain.parameters;
-    return fit_model(problem(columns, true), start);
+    return moves.cols() == 0 ? plain : fit_model(problem(columns, true), start);
   }
 
   /// Whether a constant explains most of the residual of a curve through 0.
@@ -588,12 +570,8 @@ struct CurveFitter {
     start << S(0), through_zero.parameters;
     const ModelFit<S> fit =
         fit_model(problem(columns, true), start, static_cast<double>(epsilon<S>()));
-    S largest_sq(0);
-    for (const S& force : forces) {
-      largest_sq = largest_sq < square(force) ? square(force) : largest_sq;
-    }
-    return is_offset(through_zero.left_sq - fit.left_sq, through_zero.left_sq,
-                     square(fit.parameters(0)), largest_sq);
+    return is_offset(S(through_zero.left_sq - fit.left_sq), through_zero.left_sq,
+                     square(fit.parameters(0)), S(forces.cwiseAbs2().maxCoeff()));
   }
 };
 
@@ -626,7 +604,8 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
   require(curve);
   const bool moved = curve.displaced || curve.rotated;
   const detail::UsableSamples<S> usable(samples, [&](const ForceSample<S>& s) {
-    return is_finite(s.normal_force_n) && (!moved || detail::has_finite_motion(s));
+    return is_finite(s.normal_force_n) &&
+           (!moved || (is_finite(s.displacement_mm) && is_finite(s.rotation_rad)));
   });
   expects(!usable.samples.empty(), owner, "usable samples", 0LL,
           "> 0: with a measure > 0 and a finite normal force");
@@ -659,18 +638,23 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
   } else {
     mistake =
         curve.through_zero && fitter.has_offset(columns, fit) ? cause::gauge_not_tared : nullptr;
-    detail::expects_explained(fitter.problem(columns, moved), fit, detail::cause_of(mistake));
+    detail::expects_explained(fitter.problem(columns, moved), fit,
+                              detail::cause_of<S>(mistake, {}));
   }
   const Index m = static_cast<Index>(columns.size());
-  const detail::FitMatrix<S> powers = fitter.some(fitter.powers, columns);
+  detail::FitMatrix<S> powers = fitter.terms(Eigen::all, columns);  // of measure / to
+  S scale(1);
+  for (Index i = 0; i < powers.rows(); ++i) {
+    powers.row(i) /= scale;
+    scale = scale * result.curve.to;
+  }
   const detail::FitVector<S> coefficients = powers.lazyProduct(fit.parameters.head(m));
   const detail::FitMatrix<S> half = powers.lazyProduct(fit.covariance.topLeftCorner(m, m));
-  const detail::FitMatrix<S> covariance = half.lazyProduct(powers.transpose());
   for (Index i = 0; i < powers.rows(); ++i) {
-    result.curve.coefficients[static_cast<std::size_t>(i)] = coefficients(i);
+    const auto row = static_cast<std::size_t>(i);
+    result.curve.coefficients[row] = coefficients(i);
     for (Index j = 0; j < powers.rows(); ++j) {
-      result.curve.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          covariance(i, j);
+      result.curve.covariance[row][static_cast<std::size_t>(j)] = half.row(i).dot(powers.row(j));
     }
   }
   using std::sqrt;
@@ -694,38 +678,45 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
 
 namespace detail {
 
-/// One equation y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T: a component
-/// of a force or a moment y, that of a displacement or a rotation x, and the length |x|.
+/// A displacement and the force that it should cause; of a rotation and a moment the second
+/// component does not count.
 template <scalar S>
-struct ShearEquation {
+struct ShearPair {
   S log_measure;  ///< log(measure / reference)
-  S component;
-  S length;
-  S measured;
+  Point2<S> moved;
+  Point2<S> caused;
   std::size_t sample;
+
+  S length() const {
+    using std::sqrt;
+    const S length_sq = squared_norm(moved);
+    return value(length_sq) > 0 ? sqrt(length_sq) : S(0);
+  }
 };
 
-/// Parameters c_1, ... and, last, the exponent T unless it is given.
+/// y = sum over k of c_k (u |x|)^(k-1) u x, u = (measure / reference)^T, for each component of each
+/// sample. Parameters c_1, ... and, last, the exponent T unless it is given.
 template <scalar S>
-auto shear_model(const std::vector<ShearEquation<S>>& equations,
+auto shear_model(const std::vector<ShearPair<S>>& pairs,
+                 Index components,
                  Index degree,
                  const std::optional<S>& given) {
   return [=](const FitVector<S>& p, FitVector<S>& values, FitMatrix<S>& jacobian) {
     using std::exp;
     const S exponent = given ? *given : p(degree);
     for (Index i = 0; i < values.size(); ++i) {
-      const ShearEquation<S>& e = equations[static_cast<std::size_t>(i)];
-      const S u = exp(exponent * e.log_measure);
-      S term = u * e.component, by_log(0);
+      const ShearPair<S>& pair = pairs[static_cast<std::size_t>(i / components)];
+      const S u = exp(exponent * pair.log_measure), further = u * pair.length();
+      S term = u * (i % components == 0 ? pair.moved.x : pair.moved.y), by_log(0);
       values(i) = S(0);
       for (Index k = 0; k < degree; ++k) {
         jacobian(i, k) = term;
         values(i) += p(k) * term;
         by_log += S(static_cast<int>(k) + 1) * p(k) * term;
-        term = term * (u * e.length);
+        term = term * further;
       }
       if (!given) {
-        jacobian(i, degree) = by_log * e.log_measure;
+        jacobian(i, degree) = by_log * pair.log_measure;
       }
     }
   };
@@ -737,9 +728,8 @@ ModelFit<S> fit_with_exponent(const FitProblem<S>& of, Index degree, bool given)
   const Index n = of.measured.size();
   FitVector<S> start = FitVector<S>::Zero(degree + (given ? 0 : 1)), values(n);
   FitMatrix<S> jacobian(n, start.size());
-  expects_enough(of, start.size());
   S least = not_a_number<S>();
-  for (int k = 0; !given && k <= 80; ++k) {
+  for (int k = 0; !given && n > start.size() && k <= 80; ++k) {
     FitVector<S> at = FitVector<S>::Zero(degree + 1);
     at(degree) = S(-2) + S(k) / S(10);
     of.model(at, values, jacobian);
@@ -769,22 +759,18 @@ template <scalar S>
 struct PlaneForce {
   Point2<S> d, force, left;
 };
-
-/// Pairs of equations in x and y for a force, single ones for a moment.
 template <scalar S>
-std::vector<PlaneForce<S>> plane_forces(const std::vector<ShearEquation<S>>& equations,
+std::vector<PlaneForce<S>> plane_forces(const std::vector<ShearPair<S>>& pairs,
                                         const S& exponent,
-                                        std::size_t components,
+                                        Index components,
                                         const FitVector<S>& left) {
   using std::exp;
   std::vector<PlaneForce<S>> forces;
-  for (std::size_t i = 0; i + components <= equations.size(); i += components) {
-    const ShearEquation<S>&x = equations[i], &y = equations[i + components - 1];
-    const S u = exp(exponent * x.log_measure), both = S(components > 1 ? 1 : 0);
-    const Index at = static_cast<Index>(i), next = at + static_cast<Index>(components) - 1;
-    forces.push_back({{u * x.component, both * u * y.component},
-                      {x.measured, both * y.measured},
-                      {left(at), both * left(next)}});
+  for (const ShearPair<S>& pair : pairs) {
+    const Index at = static_cast<Index>(forces.size()) * components;
+    forces.push_back({exp(exponent * pair.log_measure) * pair.moved,
+                      pair.caused,
+                      {left(at), components > 1 ? left(at + 1) : S(0)}});
   }
   return forces;
 }
@@ -809,20 +795,14 @@ struct ForceDirections {
   bool mirrored() const { return ff < S(2) * (square(mirrored_x) + square(mirrored_y)) / dd; }
 };
 
-/// Rotation of a force gauge about the normal, against the image; NaN: not determined.
-template <scalar S>
-struct GaugeAngle {
-  S rad = not_a_number<S>();
-  S sd_rad = not_a_number<S>();  ///< standard error, for samples with independent errors
-};
-
 /// The rotation from the least-squares linear map A of normalised displacements to forces. The
 /// stiffness of an elastic pad is symmetric (Betti), so an antisymmetric part of A is a rotation.
 /// Displacements along one line do not distinguish it from an anisotropic pad, and near one line
 /// the nonlinearity of the pad outweighs it. There is no angle if the determinant of sum d d^T is
-/// below a fifth of that for displacements even in all directions.
+/// below a fifth of that for displacements even in all directions. Returns the angle of the gauge
+/// against the image and its standard error, for samples with independent errors.
 template <scalar S>
-GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
+std::array<S, 2> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   using std::atan2;
   using std::sqrt;
   S xx(0), xy(0), yy(0);                             // of d d^T
@@ -837,7 +817,7 @@ GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   const S determinant = xx * yy - xy * xy, trace = xx + yy;
   constexpr int min_samples = 3;
   if (samples.size() < min_samples || !(square(trace) < S(20) * determinant)) {
-    return {};
+    return {not_a_number<S>(), not_a_number<S>()};
   }
   const Point2<S> by_x = S(1) / determinant * (yy * f_x - xy * f_y);  // columns of A
   const Point2<S> by_y = S(1) / determinant * (xx * f_y - xy * f_x);
@@ -849,21 +829,6 @@ GaugeAngle<S> gauge_angle(const std::vector<PlaneForce<S>>& samples) {
   const S variance = left_sq / S(2.0 * static_cast<double>(samples.size()) - 4);
   return {atan2(across, along),
           sqrt(variance * trace / determinant / (square(along) + square(across)))};
-}
-
-/// Likely cause for refusals; for a rotated gauge with its angle.
-template <scalar S>
-std::string cause_of(const char* mistake, const GaugeAngle<S>& angle) {
-  if (mistake != cause::gauge_rotated) {
-    return cause_of(mistake);
-  }
-  const auto degrees = [](const S& rad) {
-    return std::to_string(std::lround(57.29577951308232 * static_cast<double>(value(rad))));
-  };
-  return cause_of(mistake) +
-         (is_finite(angle.sd_rad)
-              ? " (rotated by " + degrees(angle.rad) + " +- " + degrees(angle.sd_rad) + " degrees)"
-              : " (displace in several directions to obtain the angle)");
 }
 
 /// Detects axes with which no fit can succeed: mirrored, or rotated by more than 45 degrees.
@@ -901,41 +866,55 @@ const char* mistake_in(const std::vector<PlaneForce<S>>& samples) {
   return explains && matters ? cause::gauge_rotated : nullptr;
 }
 
-/// Checks, fit and result, common to force and moment.
-template <scalar S>
+/// Checks, fit and result, common to force and moment. `pair(sample)` is what moved and what it
+/// caused.
+template <scalar S, class Usable, class Pair>
 ShearFit<S> fit_shear(const char* owner,
                       const char* exponent_name,
-                      const std::vector<ForceSample<S>>& samples,
-                      const std::vector<ShearEquation<S>>& equations,
-                      int degree,
+                      Index components,
+                      std::span<const ForceSample<S>> given,
+                      const S& reference,
                       const std::optional<S>& exponent,
-                      const FitOptions& options) {
+                      const FitOptions& options,
+                      int degree,
+                      const Usable& is_usable,
+                      const Pair& pair_of) {
   using std::exp;
-  require(owner, {{"degree", degree, within(1, 4)},
+  using std::log;
+  const bool is_moment = components == 1;
+  require(owner, {{"reference", reference, positive},
+                  {"degree", degree, within(1, 4)},
                   {exponent_name, exponent.value_or(S(0)), finite_number}});
-  const std::size_t components = samples.empty() ? 1 : equations.size() / samples.size();
-  FitProblem<S> of{owner, {}, {}, shear_model<S>(equations, degree, exponent), options};
-  of.measured.resize(static_cast<Index>(equations.size()));
-  std::vector<std::size_t> places;
-  for (const ShearEquation<S>& e : equations) {
-    of.measured(static_cast<Index>(places.size())) = e.measured;
-    places.push_back(e.sample);
+  const UsableSamples<S> usable(given, is_usable);
+  FitProblem<S> of{owner, {}, {}, {}, options};
+  of.measured.resize(static_cast<Index>(usable.samples.size()) * components);
+  std::vector<ShearPair<S>> pairs;
+  std::vector<std::size_t> places;  // of each equation
+  for (const ForceSample<S>& s : usable.samples) {
+    const auto [moved, caused] = pair_of(s);
+    const std::size_t place = usable.places[pairs.size()];
+    pairs.push_back({log(s.measure / reference), moved, caused, place});
+    for (Index k = 0; k < components; ++k) {
+      of.measured(static_cast<Index>(places.size())) = k == 0 ? caused.x : caused.y;
+      places.push_back(place);
+    }
   }
+  of.model = shear_model<S>(pairs, components, degree, exponent);
   for (int k = 1; k <= degree; ++k) {
     of.names.push_back("coefficient " + std::to_string(k));
   }
   of.names.emplace_back(exponent_name);
-  const auto forces = plane_forces(equations, exponent.value_or(S(0)), components, of.measured);
+  const auto forces = plane_forces(pairs, exponent.value_or(S(0)), components, of.measured);
   const char* const axes = wrong_axes(forces);
-  expects(axes == nullptr, owner, "usable samples", static_cast<long long>(samples.size()),
+  expects(axes == nullptr, owner, "usable samples", static_cast<long long>(pairs.size()),
           ("such that the forces follow the displacements" + cause_of(axes, gauge_angle(forces)))
               .c_str());
   const ModelFit<S> fit = fit_with_exponent<S>(of, degree, exponent.has_value());
   ShearFit<S> result;
   result.law.exponent = exponent ? *exponent : fit.parameters(degree);
   result.law.to = S(0);
-  for (const ShearEquation<S>& e : equations) {
-    const S length = exp(result.law.exponent * e.log_measure) * e.length;
+  for (const ShearPair<S>& pair : pairs) {
+    const S length = exp(result.law.exponent * pair.log_measure) * pair.length();
     result.law.to = result.law.to < length ? length : result.law.to;
   }
   expects(is_finite(result.law.to), owner, "largest displacement or rotation", result.law.to,
@@ -952,17 +931,16 @@ ShearFit<S> fit_shear(const char* owner,
   result.residual_sd = fit.residual_sd;
   add_residuals(of.measured, fit, places, result.residuals);
   result.explained = fit.explained;
-  const auto left = plane_forces(equations, result.law.exponent, components, fit.residuals);
-  const bool is_moment = components == 1;
-  const GaugeAngle<S> angle = is_moment ? GaugeAngle<S>() : gauge_angle(left);
-  result.gauge_angle_rad = angle.rad;
-  result.gauge_angle_sd_rad = angle.sd_rad;
+  const auto left = plane_forces(pairs, result.law.exponent, components, fit.residuals);
+  const auto angle = gauge_angle(left);
+  result.gauge_angle_rad = angle[0];  // NaN for a moment
+  result.gauge_angle_sd_rad = angle[1];
   const char* const mistake = mistake_in(left);
   expects_explained(of, fit, cause_of(mistake, angle));
-  const char* const units = unit_mistake(samples, {.tangential = !is_moment,
-                                                   .displacement = !is_moment,
-                                                   .rotation = is_moment,
-                                                   .moment = is_moment});
+  const char* const units = unit_mistake(usable.samples, {.tangential = !is_moment,
+                                                          .displacement = !is_moment,
+                                                          .rotation = is_moment,
+                                                          .moment = is_moment});
   result.cause = cause_in(fit, units, mistake, options);
   return result;
 }
@@ -978,23 +956,14 @@ ShearFit<S> fit_tangential_force(std::span<const ForceSample<S>> samples,
                                  const std::optional<std::type_identity_t<S>>& exponent = {},
                                  const FitOptions& options = {},
                                  int degree = 1) {
-  using std::log;
-  using std::sqrt;
-  const char* const owner = "fit_tangential_force";
-  require(owner, {{"reference", reference, positive}});
-  const detail::UsableSamples<S> usable(samples, [](const ForceSample<S>& s) {
-    return is_finite(s.tangential_force_n) && detail::has_finite_motion(s);
-  });
-  std::vector<detail::ShearEquation<S>> equations;
-  for (std::size_t i = 0; i < usable.samples.size(); ++i) {
-    const auto& [measure, d, rotation, normal, force, moment, load] = usable.samples[i];
-    const S log_measure = log(measure / reference), length_sq = squared_norm(d);
-    const S length = value(length_sq) > 0 ? sqrt(length_sq) : S(0);
-    equations.push_back({log_measure, d.x, length, force.x, usable.places[i]});
-    equations.push_back({log_measure, d.y, length, force.y, usable.places[i]});
-  }
-  return detail::fit_shear<S>(owner, "displacement_exponent", usable.samples, equations, degree,
-                              exponent, options);
+  return detail::fit_shear<S>(
+      "fit_tangential_force", "displacement_exponent", 2, samples, reference, exponent, options,
+      degree,
+      [](const ForceSample<S>& s) {
+        return is_finite(s.tangential_force_n) && is_finite(s.displacement_mm) &&
+               is_finite(s.rotation_rad);
+      },
+      [](const ForceSample<S>& s) { return std::pair(s.displacement_mm, s.tangential_force_n); });
 }
 
 /// Moment from rotation, in the same way.
@@ -1004,21 +973,12 @@ ShearFit<S> fit_moment(std::span<const ForceSample<S>> samples,
                        const std::optional<std::type_identity_t<S>>& exponent = {},
                        const FitOptions& options = {},
                        int degree = 1) {
-  using std::log;
-  const char* const owner = "fit_moment";
-  require(owner, {{"reference", reference, positive}});
-  const detail::UsableSamples<S> usable(samples, [](const ForceSample<S>& s) {
-    return is_finite(s.moment_n_mm) && is_finite(s.rotation_rad);
-  });
-  std::vector<detail::ShearEquation<S>> equations;
-  for (std::size_t i = 0; i < usable.samples.size(); ++i) {
-    const ForceSample<S>& s = usable.samples[i];
-    const S angle = value(s.rotation_rad) < 0 ? -s.rotation_rad : s.rotation_rad;
-    equations.push_back(
-        {log(s.measure / reference), s.rotation_rad, angle, s.moment_n_mm, usable.places[i]});
-  }
-  return detail::fit_shear<S>(owner, "rotation_exponent", usable.samples, equations, degree,
-                              exponent, options);
+  return detail::fit_shear<S>(
+      "fit_moment", "rotation_exponent", 1, samples, reference, exponent, options, degree,
+      [](const ForceSample<S>& s) { return is_finite(s.moment_n_mm) && is_finite(s.rotation_rad); },
+      [](const ForceSample<S>& s) {
+        return std::pair(Point2<S>{s.rotation_rad, S(0)}, Point2<S>{s.moment_n_mm, S(0)});
+      });
 }
 
 /// A linear map of both components with offsets, for axes other than those of the image. Reference
