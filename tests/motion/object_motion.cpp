@@ -14,28 +14,16 @@
 #include "support/rolling.hpp"
 
 using namespace fingerpad;
+using test::degree;
 using test::Dots;
+using test::error_deg;
 using test::Flags;
+using test::rotated;
+using test::small_grid;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 using Vector = Point3<double>;
-
-Dots rotated(Dots dots, const Pose<double>& pose) {
-  for (auto& p : dots.cells) {
-    p = pose(p);
-  }
-  return dots;
-}
-
-Dots small_grid() {
-  return test::RollingBall{.rows = 7, .cols = 7}.initial();
-}
-
-double error_deg(const Rotation<double>& a, const Rotation<double>& b) {
-  return angle_between(a, b) / degree;
-}
 
 }  // namespace
 

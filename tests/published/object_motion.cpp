@@ -19,13 +19,16 @@
 using namespace fingerpad;
 using published::basis_around;
 using published::rotation_between;
+using test::degree;
 using test::Digits50;
 using test::Dots;
+using test::error_deg;
 using test::Flags;
+using test::rotated;
+using test::small_grid;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 using Vector = Point3<double>;
 
 template <class S>
@@ -56,18 +59,6 @@ Nine<double> rotated(Nine<double> n, const Rotation<double>& r) {
     p = r(p);
   }
   return n;
-}
-Dots rotated(Dots dots, const Pose<double>& pose) {
-  for (auto& p : dots.cells) {
-    p = pose(p);
-  }
-  return dots;
-}
-Dots small_grid() {
-  return test::RollingBall{.rows = 7, .cols = 7}.initial();
-}
-double error_deg(const Rotation<double>& a, const Rotation<double>& b) {
-  return angle_between(a, b) / degree;
 }
 
 /// Error after 300 small rotations of an object that carries all dots. turn(k) is the

@@ -136,4 +136,23 @@ inline Dots noisy(
   return dots;
 }
 
+inline constexpr double degree = std::numbers::pi / 180;
+
+inline double error_deg(const fingerpad::Rotation<double>& a,
+                        const fingerpad::Rotation<double>& b) {
+  return angle_between(a, b) / degree;
+}
+
+inline Dots rotated(Dots dots, const fingerpad::Pose<double>& pose) {
+  for (auto& p : dots.cells) {
+    p = pose(p);
+  }
+  return dots;
+}
+
+/// 7 x 7 dots of a free pad.
+inline Dots small_grid() {
+  return RollingBall{.rows = 7, .cols = 7}.initial();
+}
+
 }  // namespace test
