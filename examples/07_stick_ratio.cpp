@@ -15,7 +15,6 @@ int main() {
   constexpr Index n = 21;  // dots 19.5 px apart; any grid of points with x and y works
   std::vector<Point2<float>> dots(n * n);
   std::vector<unsigned char> contact(n * n);
-  std::vector<DotState> states(n * n);
   for (Index k = 0; k < n * n; ++k) {
     const float col = float(k % n - 10), row = float(k / n - 10);
     dots[std::size_t(k)] = {320 + 19.5F * col, 240 + 19.5F * row};
@@ -23,17 +22,15 @@ int main() {
   }
   const StridedView<const Point2<float>> dot_grid(dots.data(), n, n, n);
   const StridedView<const unsigned char> contact_grid(contact.data(), n, n, n);
-  const StridedView<DotState> state_grid(states.data(), n, n, n);
 
-  const StickRatio stick(n, n);  // once
-  auto state = stick.start();
-  float last = 1;
+  StickRatio stick(n, n);  // once
+  double last = 1;
   for (int frame = 0; frame <= 12; ++frame) {
-    const auto seen = stick(dot_grid, contact_grid, state_grid, state);  // every frame
+    const auto seen = stick(dot_grid, contact_grid);  // every frame
     if (seen.updated()) {
       std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame,
-                  double(seen.stick_ratio), seen.stick, seen.dots_in_contact(),
-                  seen.stick_ratio < 0.5F ? "grip harder" : "ok");
+                  seen.stick_ratio, seen.stick, seen.dots_in_contact(),
+                  seen.stick_ratio < 0.5 ? "grip harder" : "ok");
       last = seen.stick_ratio;
     } else {
       std::printf("frame %2d: %s\n", frame, name_of(seen.status));
@@ -45,5 +42,5 @@ int main() {
       dots[k].x += std::clamp(1 - slipping, 0.0F, 1.0F);
     }
   }
-  return last < 0.2F ? 0 : 1;
+  return last < 0.2 ? 0 : 1;
 }

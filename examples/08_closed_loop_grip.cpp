@@ -21,7 +21,8 @@ namespace {
 constexpr int n = 21;  // dots in each direction
 constexpr double frame_s = 1.0 / 30;
 constexpr double dropped_mm = 20;
-const fingerpad::GripOptions<> options{.raise_gain_n_per_s = 20};  // low, because the cup fills slowly
+const fingerpad::GripOptions<> options{.raise_gain_n_per_s =
+                                           20};  // low, because the cup fills slowly
 
 /// Load on the fingertip, N: the cup is filled for 13 s, then held.
 double load_at(double time_s) {
@@ -29,12 +30,8 @@ double load_at(double time_s) {
 }
 
 grip::Run run(bool controlled) {
-  const fingerpad::StickRatio stick_ratio(n, n);  // once
+  fingerpad::StickRatio stick_ratio(n, n);       // once
   fingerpad::GripControl control(options, 1.5);  // N, when the cup was grasped
-  auto stick_state = stick_ratio.start();
-
-  std::vector<fingerpad::DotState> states(n * n);
-  const fingerpad::StridedView<fingerpad::DotState> states_out(states.data(), n, n, n);
 
   double force_n = control.force_n();
   grip::SlippingLoad load({.dots = n}, load_at(0), force_n);
@@ -44,8 +41,8 @@ grip::Run run(bool controlled) {
     const double time_s = frame * frame_s;
     load.advance(load_at(time_s), force_n, frame_s);
     camera.look_at(load);
-    const auto stick = stick_ratio(camera.dots(), camera.touch(), states_out, stick_state);
-    const double ratio = double(stick.stick_ratio);
+    const auto stick = stick_ratio(camera.dots(), camera.touch());
+    const double ratio = stick.stick_ratio;
     const auto grip = control(stick, frame_s);
     record.push_back(
         {time_s, load_at(time_s), load.friction_limit_n(), force_n, ratio, load.slip_mm()});

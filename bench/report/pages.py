@@ -68,7 +68,7 @@ COMPARED = [
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
      "published: ObjectMotion", "ObjectMotion, double, the default"),
     ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published: StickRatio",
-     "StickConsensus, ResidualMean, float, the default"),
+     "StickRatio, double, the default"),
     ("force along the pad", "wrench", "72 side dots", "published: segments", "double, the default"),
     ("shift of a rigid contact", "contact_shift", "noise only", "central dot, published",
      "dots of the edge, the default"),

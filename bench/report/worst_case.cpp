@@ -23,7 +23,6 @@
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/gel_frames.hpp"
 #include "support/slipping_patch.hpp"
@@ -200,9 +199,7 @@ std::vector<Kind> of_gel(bool with_slide) {
 
 /// Dots of a dragged patch, the same with all dots in contact and strong noise, and random dots.
 std::vector<Kind> of_stick_in_space() {
-  static const SpatialStickRatio<double> ratio(21, 21);
-  static auto state = ratio.start();
-  static Image<DotState> states(21, 21);
+  static StickRatio<> ratio(21, 21, {.noise = 0.005});
   static const test::SlippingPatch patch;
   const auto moved = [](double lateral_mm, double step_mm) {
     return made<Image<Point3<double>>>([=](int k, test::Random& random) {
@@ -218,17 +215,14 @@ std::vector<Kind> of_stick_in_space() {
   static const auto anywhere = made<Image<Point3<double>>>(
       [](int, test::Random& random) { return scattered<Point3<double>>(21, 21, -15, 15, random); });
   static const Image<std::uint8_t> all(21, 21, 1);
-  return {{"a patch that is dragged",
-           [](int k) { (void)ratio(usual[variant(k)], patch.contact, states, state); }},
+  return {{"a patch that is dragged", [](int k) { (void)ratio(usual[variant(k)], patch.contact); }},
           {"all dots touch, each shaken by a fifth of a pitch",
-           [](int k) { (void)ratio(shaken[variant(k)], all, states, state); }},
-          {"dots anywhere", [](int k) { (void)ratio(anywhere[variant(k)], all, states, state); }}};
+           [](int k) { (void)ratio(shaken[variant(k)], all); }},
+          {"dots anywhere", [](int k) { (void)ratio(anywhere[variant(k)], all); }}};
 }
 
 std::vector<Kind> of_stick_in_the_image() {
-  static const StickRatio<> ratio(21, 21);
-  static auto state = ratio.start();
-  static Image<DotState> states(21, 21);
+  static StickRatio<> ratio(21, 21);
   const auto moved = [](double shake_px) {
     return made<Image<Point2<double>>>([=](int k, test::Random& random) {
       Image<Point2<double>> dots(21, 21);
@@ -247,7 +241,7 @@ std::vector<Kind> of_stick_in_the_image() {
       [](int, test::Random& random) { return scattered<Point2<double>>(21, 21, 0, 600, random); });
   static const Image<std::uint8_t> all(21, 21, 1);
   const auto call = [](const std::vector<Image<Point2<double>>>& dots) {
-    return [&](int k) { (void)ratio(dots[variant(k)], all, states, state); };
+    return [&](int k) { (void)ratio(dots[variant(k)], all); };
   };
   return {{"dots that are dragged", call(usual)},
           {"each shaken by a seventh of a pitch", call(shaken)},

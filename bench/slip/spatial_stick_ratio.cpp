@@ -9,8 +9,6 @@
 // 1.5 % and moments to 2 %. Errors: of the ratio, where a kept answer counts as an answer and a
 // missing one as 1; of the limit, relative to the coefficient of friction, where plates are
 // dragged.
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
-
 #include <cmath>
 #include <memory>
 #include <string>
@@ -19,6 +17,7 @@
 #include "bench/support/run.hpp"
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/slipping_patch.hpp"
 #include "support/spatial_scene.hpp"
 
@@ -53,13 +52,14 @@ const Recording& recording() {
   return r;
 }
 
+const StickOptions of_camera = {.noise = 0.005};
+
 template <class S>
-std::vector<double> errors_of(const SpatialStickRatio<S>& ratio) {
+std::vector<double> errors_of() {
   std::vector<double> errors;
-  auto state = ratio.start();
-  test::Image<DotState> states(21, 21);
+  StickRatio<S> stick(21, 21, of_camera);
   for (std::size_t k = 0; k < recording().frames.size(); ++k) {
-    const auto r = ratio(recording().frames[k], recording().contact, states, state);
+    const auto r = stick(recording().frames[k], recording().contact);
     const bool one_step = r.updated() && r.reference_age == 1;
     errors.push_back(one_step ? static_cast<double>(r.stick_ratio) - recording().truth[k]
                               : test::nan);
@@ -70,9 +70,7 @@ std::vector<double> errors_of(const SpatialStickRatio<S>& ratio) {
 template <class S>
 void add_frame(const std::string& name) {
   struct Running {
-    SpatialStickRatio<S> ratio{21, 21};
-    typename SpatialStickRatio<S>::State state = ratio.start();
-    test::Image<DotState> states{21, 21};
+    StickRatio<S> stick{21, 21, of_camera};
     std::size_t k = 0;
   };
   const bench::Memory memory;
@@ -81,12 +79,9 @@ void add_frame(const std::string& name) {
       name, 1, memory.bytes(),
       [d] {
         d->k = (d->k + 1) % recording().frames.size();
-        benchmark::DoNotOptimize(
-            d->ratio(recording().frames[d->k], recording().contact, d->states, d->state));
+        benchmark::DoNotOptimize(d->stick(recording().frames[d->k], recording().contact));
       },
-      [d](auto& counters) {
-        bench::note_errors(counters, "stick ratio", "of 1", errors_of(d->ratio));
-      });
+      [](auto& counters) { bench::note_errors(counters, "stick ratio", "of 1", errors_of<S>()); });
 }
 
 void add_limit() {
@@ -126,14 +121,12 @@ struct OnScenes {
   void add(const test::SpatialScene& scene, bool is_dragged_plate, std::uint64_t seed) {
     test::Random random(seed);
     const Index across = scene.dots_across();
-    const SpatialStickRatio<double> ratio(across, across);
-    auto state = ratio.start();
+    StickRatio<> stick(across, across, of_camera);
     FrictionLimit<double> friction;
     published::FrictionRatio<double> published;
-    test::Image<DotState> states(across, across);
     for (Index k = 0; k < scene.size(); ++k) {
       const Dots seen = noisy(scene[k].dots, 0.005, 0.025, random);
-      const auto r = ratio(seen, scene[k].contact, states, state);
+      const auto r = stick(seen, scene[k].contact);
       const auto load =
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
                        test::noisy(scene[k].moment_n_mm, 0.02, random), seen, scene[k].contact);
@@ -164,9 +157,7 @@ template <class After, class Note>
 void add_on_scenes(const std::string& name, const After& after, const Note& note) {
   struct Running {
     After after;
-    SpatialStickRatio<double> ratio{21, 21};
-    SpatialStickRatio<double>::State state = ratio.start();
-    test::Image<DotState> states{21, 21};
+    StickRatio<> stick{21, 21, of_camera};
     std::size_t k = 0;
   };
   const bench::Memory memory;
@@ -175,15 +166,14 @@ void add_on_scenes(const std::string& name, const After& after, const Note& note
       "on scenes/" + name, 1, memory.bytes(),
       [d] {
         d->k = (d->k + 1) % recording().frames.size();
-        benchmark::DoNotOptimize(
-            d->after(d->ratio(recording().frames[d->k], recording().contact, d->states, d->state)));
+        benchmark::DoNotOptimize(d->after(d->stick(recording().frames[d->k], recording().contact)));
       },
       note);
 }
 
 void add_scenes() {
   add_on_scenes(
-      "SpatialStickRatio alone", [](const auto& r) { return r.stick_ratio; },
+      "StickRatio alone", [](const auto& r) { return r.stick_ratio; },
       [](auto& counters) {
         bench::note_errors(counters, "stick ratio", "of 1", on_scenes().dots);
       });
@@ -209,8 +199,8 @@ void add_scenes() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  add_frame<double>("frame of 21x21 dots in space/SpatialStickRatio, double, the default");
-  add_frame<float>("frame of 21x21 dots in space/SpatialStickRatio, float");
+  add_frame<double>("frame of 21x21 dots in space/StickRatio, double, the default");
+  add_frame<float>("frame of 21x21 dots in space/StickRatio, float");
   add_limit();
   add_scenes();
   bench::add_streaming("frame of 21x21 dots in space");

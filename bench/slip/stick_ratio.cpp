@@ -83,13 +83,12 @@ const std::vector<KnownFrame>& known_frames(Index dots) {
 template <class Ratio>
 std::vector<double> errors_of(const Ratio& ratio) {
   std::vector<double> errors;
-  auto state = ratio.start();
-  test::DotStates states(ratio.rows(), ratio.cols());
+  Ratio stick = ratio;
   for (const KnownFrame& frame : known_frames(ratio.rows())) {
     if (frame.begins) {
-      state = ratio.start();
+      stick = ratio;
     }
-    const auto r = ratio(frame.seen, frame.truth.contact, states, state);
+    const auto r = stick(frame.seen, frame.truth.contact);
     errors.push_back(r.updated() ? static_cast<double>(r.stick_ratio) -
                                        frame.truth.stick_ratio(r.reference_age)
                                  : test::nan);
@@ -101,60 +100,40 @@ void note_ratio(bench::Counters& counters, const std::vector<double>& errors) {
   bench::note_errors(counters, "stick ratio", "of 1", errors);
 }
 
-template <class Ratio, class... Parameters>
-void add(const std::string& name, const Recording& input, const Parameters&... parameters) {
+/// `ratio` has seen no frame; `slip_share` is its delta_0 / U.
+template <class Ratio>
+void add(const std::string& name, const Recording& input, const Ratio& ratio, double slip_share) {
   struct Running {
-    Ratio ratio;
-    typename Ratio::State state = ratio.start();
-    test::DotStates states{ratio.rows(), ratio.cols()};
+    Ratio fresh, stick = fresh;
     std::size_t k = 0;
   };
-  const Index dots = input.contact.rows();
   const bench::Memory memory;
-  const auto d = std::make_shared<Running>(Running{Ratio(dots, dots, parameters...)});
+  const auto d = std::make_shared<Running>(Running{ratio});
   bench::add(
-      name, 1, memory.bytes(),
+      name, 1, memory.bytes() / 2,
       [d, &input] {
         d->k = d->k + 1 < input.frames.size() ? d->k + 1 : 0;
-        benchmark::DoNotOptimize(d->ratio(input.frames[d->k], input.contact, d->states, d->state));
+        benchmark::DoNotOptimize(d->stick(input.frames[d->k], input.contact));
       },
-      [d, errors = std::vector<double>()](auto& counters) mutable {
-        if (d->ratio.rows() == 21) {
-          bench::note_stick_on_scenes(counters, d->ratio, noise_px);
+      [d, slip_share, errors = std::vector<double>()](auto& counters) mutable {
+        if (d->fresh.rows() == 21) {
+          bench::note_stick_on_scenes(counters, d->fresh, noise_px, slip_share);
         }
-        errors = errors.empty() ? errors_of(d->ratio) : errors;
+        errors = errors.empty() ? errors_of(d->fresh) : errors;
         note_ratio(counters, errors);
       });
 }
 
-template <class Motion,
-          class Reference = UpdatedReference,
-          class Denoising = ResidualMean,
-          class S = float>
-void add_frame(const std::string& name) {
-  add<StickRatio<Motion, Reference, Denoising, S>>("frame of 21x21 dots/" + name, recording());
+template <class S>
+void add_frame(const std::string& name, const StickOptions& options = {}) {
+  add("frame of 21x21 dots/" + name, recording(), StickRatio<S>(21, 21, options),
+      options.slip_share);
 }
 
 /// The printed method.
 void add_printed(const char* name, const published::StickRatioOptions& options) {
-  struct Running {
-    test::PublishedStick::State state;
-    std::size_t k = 0;
-  };
-  const bench::Memory memory;
-  const auto d = std::make_shared<Running>(Running{{21, 21, options}});
-  const test::PublishedStick ratio{d->state};
-  bench::add(
-      std::string("frame of 21x21 dots/") + name, 1, memory.bytes(),
-      [d] {
-        d->k = d->k + 1 < recording().frames.size() ? d->k + 1 : 0;
-        benchmark::DoNotOptimize(d->state(recording().frames[d->k], recording().contact));
-      },
-      [ratio, errors = std::vector<double>()](auto& counters) mutable {
-        bench::note_stick_on_scenes(counters, ratio, noise_px);
-        errors = errors.empty() ? errors_of(ratio) : errors;
-        note_ratio(counters, errors);
-      });
+  add(std::string("frame of 21x21 dots/") + name, recording(),
+      test::PublishedStick{.ratio = {21, 21, options}}, 0.12);
 }
 
 /// Motion of the object between two frames, from random samples of the dots.
@@ -186,31 +165,29 @@ void add_opencv() {
 
 void add_growth() {
   static const Recording small(11, 11, 0.6), large(41, 41, 0.6), slow(21, 21, 0.05);
-  const auto name = [](const char* what) { return std::string("growth/") + what; };
-  using Default = StickRatio<>;
-  add<Default>(name("21x21 dots, 64 stored frames"), recording());
-  add<Default>(name("11x11 dots"), small);
-  add<Default>(name("41x41 dots"), large);
-  add<Default>(name("1024 stored frames"), recording(), StickTest(), StickConsensus<>(),
-               UpdatedReference{.capacity = 1024});
-  add<Default>(name("moving by 0.05 px a frame"), slow);
+  const auto grow = [](const char* what, const Recording& input, const StickOptions& options) {
+    const Index dots = input.contact.rows();
+    add(std::string("growth/") + what, input, StickRatio<>(dots, dots, options),
+        options.slip_share);
+  };
+  grow("21x21 dots, 64 stored frames", recording(), {});
+  grow("11x11 dots", small, {});
+  grow("41x41 dots", large, {});
+  grow("1024 stored frames", recording(), {.capacity = 1024});
+  grow("moving by 0.05 px a frame", slow, {});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  using Updated = UpdatedReference;
   add_printed("published: StickRatio", {});
   add_printed("published: the first reference stays", {.updates = false});
   add_printed("published: without denoising", {.S2 = 0, .S3 = 0});
   add_printed("published: the conventional method", published::conventional_stick_ratio);
-  add_frame<StickConsensus<>>("StickConsensus, ResidualMean, float, the default");
-  add_frame<StickConsensus<>, Updated, ResidualMean, double>("the default in double");
-  add_frame<StickConsensus<>, Updated, NoDenoising>("without denoising");
-  add_frame<StickConsensus<Freedom::rigid>>("without scale");
-  add_frame<StickConsensus<Freedom::scaling>>("without rotation");
-  add_frame<StickConsensus<Freedom::translation>>("without rotation and scale");
+  add_frame<double>("StickRatio, double, the default");
+  add_frame<double>("the noise is given", {.noise = noise_px});
+  add_frame<float>("float");
   add_opencv();
   bench::add_streaming("frame of 21x21 dots");
   add_growth();

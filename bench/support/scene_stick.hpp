@@ -15,28 +15,28 @@
 
 namespace bench {
 
-/// For a ratio with the default StickTest.
+/// `slip_share`: delta_0 / U of the ratio.
 template <class Ratio>
-void note_stick_on_scenes(Counters& counters, const Ratio& ratio, double noise_px) {
+void note_stick_on_scenes(Counters& counters,
+                          const Ratio& ratio,
+                          double noise_px,
+                          double slip_share) {
   constexpr double mm_per_px = 0.092;  // of membrane, 10 mm from the plate
-  const fingerpad::StickTest test;
   std::vector<double> since_reference, in_step;
-  test::DotStates states(21, 21);
   for (const std::string name : {"drag", "twist", "mix", "cylinder"}) {
     const test::StickScene scene(name);
     const test::SlippedLess slipped(name, scene.steps());
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       test::Random random(seed);
-      auto state = ratio.start();
+      Ratio stick = ratio;
       for (fingerpad::Index k = 0; k < scene.steps(); ++k) {
         const auto seen = noisy(scene.dots(k), noise_px, random);
-        const auto r = ratio(seen, scene.contact(k), states, state);
+        const auto r = stick(seen, scene.contact(k));
         if (!r.updated()) {
           continue;
         }
         const double found = static_cast<double>(r.stick_ratio);
-        const double length_mm =
-            mm_per_px * test.slip * static_cast<double>(r.furthest_px) / test.reference;
+        const double length_mm = mm_per_px * slip_share * static_cast<double>(r.furthest);
         const double truth = slipped(k, r.reference_age, length_mm);
         since_reference.push_back(found - truth);  // NaN where the truth is not known
         in_step.push_back(found - scene.stick_ratio(k));

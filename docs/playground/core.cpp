@@ -152,7 +152,7 @@ class VirtualPad {
     o.contact.ring.radius_px = 25 * scale;
     o.contact.free_apex_mm = membrane_.film.free_top_mm();
     o.free_dots_mm = home_.view();
-    o.stick.lateral_mm = dot_noise_px * view_.camera.pitch_mm;
+    o.stick.noise = dot_noise_px * view_.camera.pitch_mm;
     o.rim_mm = rim_.view();
     o.wrench.base_radius_mm = rim_mm;
     o.wrench.side_dot_length_mm = Rim::side_dot_mm;

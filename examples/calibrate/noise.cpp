@@ -57,20 +57,11 @@ Outcome dots(const Path& recording) {
   for (PlotPoint& point : plot.points) {
     point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise.noise_px : 0;
   }
-  // a dot at the edge of the contact is averaged with three side and two diagonal neighbours
-  const double edge_px = std::sqrt(50.0) / 14 * noise.noise_px;
-  const double slip_px = fingerpad::slip_threshold_for(edge_px, 0.02);
-  // one frame at rest in a hundred has a dot that moves further
-  const double dots = static_cast<double>(noise.dots);
-  const double store_px = fingerpad::slip_threshold_for(noise.noise_px, 0.01 / dots);
   Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
   report.doubt(!noise.ok(), text_of(noise));
   report.doubt(frames.size() < 5, "four frames are too few to estimate the noise: record twenty");
-  const double relative = noise.noise_error_px / noise.noise_px;
   report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
-                       {"slip_px", slip_px, slip_px * relative},
-                       {"store_px", store_px, store_px * relative},
-                       {"dots", dots}};
+                       {"dots", static_cast<double>(noise.dots)}};
   Outcome outcome;
   outcome.reports = {report};
   outcome.plots = {plot};

@@ -12,6 +12,7 @@
 
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/math/rotation.hpp"
 
 namespace python {
 
@@ -231,6 +232,16 @@ py::tuple as_tuple(const fingerpad::Point2<S>& p) {
 template <class S>
 py::tuple as_tuple(const fingerpad::Point3<S>& p) {
   return py::make_tuple(p.x, p.y, p.z);
+}
+
+/// A rotation matrix, row by row, and a translation in mm.
+inline py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
+  const auto& r = pose.rotation;
+  py::tuple rows(3);
+  for (int i = 0; i < 3; ++i) {
+    rows[static_cast<std::size_t>(i)] = py::make_tuple(r(i, 0), r(i, 1), r(i, 2));
+  }
+  return py::make_tuple(rows, as_tuple(pose.translation_mm));
 }
 
 }  // namespace python

@@ -16,7 +16,7 @@ namespace python {
 namespace {
 
 using fingerpad::FingertipResult;
-using fingerpad::SpatialStickTest;
+using fingerpad::StickOptions;
 using Reference = fingerpad::DepthReference<float>;
 using Options = fingerpad::FingertipOptions;
 using WrenchOptions = fingerpad::WrenchOptions<double>;
@@ -73,7 +73,7 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const Array& free_dots_mm,
                                 const Array& rim_mm,
                                 const fingerpad::ContactTest& contact,
-                                const SpatialStickTest& stick,
+                                const StickOptions& stick,
                                 const WrenchOptions& wrench,
                                 const std::optional<fingerpad::NormalForce<>>& force_of_area,
                                 const std::optional<fingerpad::NormalForce<>>& force_of_depth,
@@ -97,16 +97,6 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.smoothing_px = count_of<int>(smoothing_px, "smoothing_px");
   options.dot_radius_px = number_of(dot_radius_px, "dot_radius_px");
   return std::make_unique<Fingertip>(options);
-}
-
-/// A rotation matrix, row by row, and a translation in mm.
-py::tuple pose_tuple(const fingerpad::Pose<double>& pose) {
-  const auto& r = pose.rotation;
-  py::tuple rows(3);
-  for (int i = 0; i < 3; ++i) {
-    rows[static_cast<std::size_t>(i)] = py::make_tuple(r(i, 0), r(i, 1), r(i, 2));
-  }
-  return py::make_tuple(rows, as_tuple(pose.translation_mm));
 }
 
 void bind_motion_result(py::module_& module) {
@@ -133,31 +123,6 @@ void bind_motion_result(py::module_& module) {
       .def_property_readonly("displacement_mm",
                              [](const Motion& r) { return as_tuple(r.displacement_mm); })
       .def_readonly("residual_rms_mm", &Motion::residual_rms_mm);
-}
-
-void bind_stick_result(py::module_& module) {
-  using Stick = fingerpad::SpatialStickResult<double>;
-  py::class_<Stick>(module, "SpatialStickResult",
-                    "Stick and slip of a frame in space; slip/stick_result.hpp.")
-      .def_property_readonly("ok", &Stick::ok, "whether the ratio may be used")
-      .def_property_readonly("updated", &Stick::updated, "whether it is that of this frame")
-      .def_property_readonly("status", [](const Stick& r) { return name_of(r.status); })
-      .def_readonly("stick", &Stick::stick, "dots in contact that stick")
-      .def_readonly("slip", &Stick::slip, "dots in contact that slip")
-      .def_readonly("unknown", &Stick::unknown, "dots in contact of unknown state")
-      .def_readonly("out_of_place", &Stick::out_of_place)
-      .def_property_readonly(
-          "back",
-          [](const Stick& r) { return py::make_tuple(r.back.stick_ratio, r.back.reference_age); },
-          "stick ratio and age of its reference, if the dots fall back")
-      .def_readonly("stick_ratio", &Stick::stick_ratio, "in [0, 1]; NaN if not known yet")
-      .def_readonly("ratio_sd", &Stick::ratio_sd,
-                    "standard deviation of stick_ratio from the noise of the dots")
-      .def_readonly("furthest_mm", &Stick::furthest_mm)
-      .def_readonly("reference_age", &Stick::reference_age, "frames")
-      .def_property_readonly(
-          "motion", [](const Stick& r) { return pose_tuple(r.motion); },
-          "(R, t) of the object since the reference, if anything sticks");
 }
 
 void bind_slip_result(py::module_& module) {
@@ -247,18 +212,8 @@ void bind_result(py::module_& module) {
 
 void bind_fingertip(py::module_& module) {
   bind_motion_result(module);
-  bind_stick_result(module);
   bind_slip_result(module);
   bind_shift_and_area(module);
-  bind_options<SpatialStickTest>(
-      module, "SpatialStickTest",
-      "Noise of the dots and thresholds of slip; see slip/spatial_stick_ratio.hpp.")
-      .def_readwrite("lateral_mm", &SpatialStickTest::lateral_mm)
-      .def_readwrite("depth_mm", &SpatialStickTest::depth_mm)
-      .def_readwrite("free_frames", &SpatialStickTest::free_frames)
-      .def_readwrite("slip_share", &SpatialStickTest::slip_share)
-      .def_readwrite("false_slip", &SpatialStickTest::false_slip)
-      .def_readwrite("min_dots", &SpatialStickTest::min_dots);
   bind_result(module);
   py::class_<Fingertip>(
       module, "Fingertip",
@@ -266,8 +221,9 @@ void bind_fingertip(py::module_& module) {
       "It stores past frames: use one object for each pad.")
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
            py::arg("free_dots_mm"), py::arg("rim_mm"),
-           py::arg("contact") = fingerpad::ContactTest(), py::arg("stick") = SpatialStickTest(),
-           py::arg("wrench") = WrenchOptions(), py::arg("force_of_area") = py::none(),
+           py::arg("contact") = fingerpad::ContactTest(),
+           py::arg("stick") = StickOptions{.noise = 0.005}, py::arg("wrench") = WrenchOptions(),
+           py::arg("force_of_area") = py::none(),
            py::arg("force_of_depth") = py::none(), py::arg("shear") = py::none(),
            py::arg("shear_by_depth") = false, py::arg("smoothing_px") = py::int_(29),
            py::arg("dot_radius_px") = py::float_(0.0),

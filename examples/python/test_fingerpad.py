@@ -194,7 +194,7 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
     with pytest.raises(ValueError, match=r"^Camera: pitch_mm = -1, must be finite and > 0$"):
         fp.Wrench(fp.Camera(pitch_mm=-1), 480, 480, side_dots()[0])
     with pytest.raises(fp.ParameterError, match="slip = 0"):
-        fp.StickRatio(9, 9, fp.StickTest(slip=0))
+        fp.StickRatio(9, 9, fp.StickOptions(false_slip=0))
     with pytest.raises(ValueError, match="9 x 9"):
         fp.StickRatio(9, 9)(np.zeros((8, 9, 2)), np.ones((8, 9), bool))
     with pytest.raises(fp.ParameterError, match="usable samples"):
@@ -219,11 +219,12 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
     ("normal_force_n must contain real", lambda ratio, d: fp.fit_normal_force([1, 2], ["1", "2"])),
     ("rows must be an int, not bool", lambda ratio, d: fp.StickRatio(True, 9)),
     ("cols must be an int, not float", lambda ratio, d: fp.FoamHand(4, 4.0)),
-    ("StickTest: min_dots must be an int, not bool", lambda ratio, d: fp.StickTest(min_dots=True)),
+    ("StickOptions: min_dots must be an int, not bool",
+     lambda ratio, d: fp.StickOptions(min_dots=True)),
     ("Camera: pitch_mm must be a real number, not complex128",
      lambda ratio, d: fp.Camera(pitch_mm=np.complex128(0.1 + 1j))),
-    ("StickTest: covers_pattern must be True or False, not str",
-     lambda ratio, d: fp.StickTest(covers_pattern="no")),
+    ("StickOptions: covers_pattern must be True or False, not str",
+     lambda ratio, d: fp.StickOptions(covers_pattern="no")),
     ("readings must be the arrays of two fingers", lambda ratio, d: fp.FoamHand(4, 4)(None, 0.0)),
     ("depth_mm must be a NumPy array",
      lambda ratio, d: fp.ContactRegion(fp.Camera(), 9, 9)([[1.0]])),
@@ -281,7 +282,7 @@ def test_statuses_are_those_of_cpp():
 def test_dots_that_move_as_one_stick_and_those_that_stay_behind_slip():
     y, x = np.mgrid[:9, :9] * 20.0
     free = np.stack([x, y], axis=-1)
-    ratio = fp.StickRatio(9, 9, fp.StickTest(free_frames=0))
+    ratio = fp.StickRatio(9, 9, fp.StickOptions(free_frames=0))
     inside = np.hypot(x - 80, y - 80) < 70
     for k in range(12):
         dots = free + [0.6 * k, 0]
@@ -354,7 +355,7 @@ def test_the_stick_ratio_has_the_bits_of_cpp(tmp_path):
                 file.write(f"{k},{i},{j},{dots[i, j, 0]:.6f},{dots[i, j, 1]:.6f}\n")
     run("replay", recording, "--out", tmp_path / "out", "--no-pictures")
     told, of_dots = table(tmp_path / "out/frames.csv"), table(tmp_path / "out/dots.csv")
-    ratio = fp.StickRatio(12, 12, fp.StickTest(covers_pattern=True))
+    ratio = fp.StickRatio(12, 12, fp.StickOptions(covers_pattern=True))
     for k, dots in enumerate(frames):
         states, result = ratio(dots, np.ones((12, 12), bool))
         assert f"{result.stick_ratio:.6f}" == f"{told['stick_ratio'][k]:.6f}"

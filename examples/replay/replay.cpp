@@ -154,7 +154,7 @@ void print_dots(const Chain& chain, const Writer& writer) {
   for (const FrameRow& row : writer.rows()) {
     if (row.stick.updated()) {
       ++updated;
-      lowest = (std::min)(lowest, static_cast<double>(row.stick.stick_ratio));
+      lowest = (std::min)(lowest, row.stick.stick_ratio);
     }
   }
   if (updated > 0) {

@@ -68,17 +68,13 @@ double noise_px(const std::vector<DotGrid>& frames) {
   return sizes.empty() ? 0.0 : sd_of_median * replay::median_of(sizes) / std::sqrt(2.0);
 }
 
-/// The threshold that a difference of two noisy positions exceeds with probability false_slip.
-double slip_px_of(double noise_px) {
-  return noise_px * std::sqrt(2.0) * std::sqrt(-2 * std::log(false_slip));
-}
-
-std::vector<double> ratios(const std::vector<DotGrid>& frames, const fingerpad::StickTest& test) {
-  replay::StickStep step(frames.front().size(), test);
+std::vector<double> ratios(const std::vector<DotGrid>& frames,
+                           const fingerpad::StickOptions& options) {
+  replay::StickStep step(frames.front().size(), options);
   std::vector<double> ratio;
   for (const DotGrid& dots : frames) {
     const auto result = step(dots, none).stick.result;
-    ratio.push_back(result.updated() ? static_cast<double>(result.stick_ratio) : none);
+    ratio.push_back(result.updated() ? result.stick_ratio : none);
   }
   return ratio;
 }
@@ -140,11 +136,9 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
   try {
     const Followed followed = follow(file);
     const std::vector<DotGrid>& frames = followed.dots;
-    fingerpad::StickTest test{.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
-    test.covers_pattern = true;  // unknown, so every dot counts as in contact
+    // the contact is unknown, so every dot counts as in contact
     view.ratio = ratios(frames, {.covers_pattern = true});
-    test.slip = (std::max)(test.slip, slip_px_of(noise_px(frames)));
-    view.ratio_by_noise = ratios(frames, test);
+    view.ratio_by_noise = ratios(frames, {.noise = noise_px(frames), .covers_pattern = true});
     for (const DotGrid& dots : frames) {
       view.moved_share.push_back(share_far_off(frames.front(), dots));
     }

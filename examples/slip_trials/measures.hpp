@@ -13,7 +13,7 @@ namespace slip_trials {
 /// The recording of one camera. NaN: no new stick ratio, or no dots.
 struct View {
   std::vector<double> ratio;           ///< the stick ratio with the default thresholds
-  std::vector<double> ratio_by_noise;  ///< the same with slip_px from the noise of the first frames
+  std::vector<double> ratio_by_noise;  ///< the same with the noise of the first frames
   std::vector<double> moved_share;     ///< share of dots more than 2 px off the median motion
   SlideSeries slide;                   ///< empty if no frame of the free pad is known
   std::string fault;                   ///< why there are no results

@@ -48,7 +48,6 @@
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
 #if __has_include(<Eigen/Core>)

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_scene.hpp"
 
@@ -53,15 +53,14 @@ PoseErrors errors_of(const std::string& name,
   const SpatialScene scene(name);
   const Index n = scene.dots_across();
   const double along = noise * 0.005, deep = noise * 0.025;
-  const SpatialStickRatio<double> ratio(n, n, {.lateral_mm = along, .depth_mm = deep});
+  const StickRatio<> fresh(n, n, {.noise = along});
   PoseErrors e;
   double told = 0, frames = 0, held = 0, told_sticking = 0, sticking = 0;
   for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
     test::Random random(seed);
-    auto stick_state = ratio.start();
+    StickRatio<> ratio = fresh;
     FrictionLimit<double> limit;
     ObjectMotion<> motion(n, n);
-    test::Image<DotState> states(n, n);
     test::Image<std::uint8_t> slips(n, n);
     Pose<double> began;
     Point3<double> middle{0, 0, 0};
@@ -72,7 +71,7 @@ PoseErrors errors_of(const std::string& name,
         const double x = random.normal(), y = random.normal(), z = random.normal();
         p = {p.x + along * x, p.y + along * y, p.z + deep * z};
       }
-      const auto seen = ratio(dots, scene[k].contact, states, stick_state);
+      const auto seen = ratio(dots, scene[k].contact);
       auto force_n = scene[k].force_n, moment_n_mm = scene[k].moment_n_mm;
       if (force_noise > 0) {
         force_n = test::noisy(force_n, force_noise * 0.015, random);
@@ -80,8 +79,10 @@ PoseErrors errors_of(const std::string& name,
       }
       const auto load = contact_load(force_n, moment_n_mm, dots, scene[k].contact);
       const auto slip = limit(load, seen);
-      for (std::size_t at = 0; knows_slip && at < states.cells.size(); ++at) {
-        slips.cells[at] = slip.holds(states.cells[at]) ? 0 : 1;
+      for (Index i = 0; knows_slip && i < n; ++i) {
+        for (Index j = 0; j < n; ++j) {
+          slips(i, j) = slip.holds(ratio.states()(i, j)) ? 0 : 1;
+        }
       }
       const auto r = motion(dots, scene[k].contact, slips);
       const bool touches = scene[k].contact_area_mm2 > 0;

@@ -12,7 +12,6 @@
 
 #include "fingerpad/published/friction_ratio.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/spatial_scene.hpp"
@@ -74,17 +73,14 @@ constexpr int recordings = 10;
 Warners warned_on(const std::string& name) {
   const SpatialScene scene(name);
   const Index across = scene.dots_across();
-  const SpatialStickRatio<double> ratio(across, across);
-  const StickRatio<> in_image(across, across);
+  const StickRatio<> fresh(across, across, {.noise = 0.005});
   Warners w;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
-    auto state = ratio.start();
-    auto image_state = in_image.start();
+    StickRatio<> ratio = fresh, in_image = fresh;
     test::Image<Point2<double>> flat(across, across);
     FrictionLimit<double> limit;
     published::FrictionRatio<double> friction;
-    test::Image<DotState> states(across, across);
     w.image.reset(), w.dots.reset(), w.fused.reset(), w.friction_ratio.reset();
     for (Index k = 0; k < scene.size(); ++k) {
       auto dots = scene[k].dots;
@@ -95,8 +91,8 @@ Warners warned_on(const std::string& name) {
       for (std::size_t at = 0; at < dots.cells.size(); ++at) {
         flat.cells[at] = {dots.cells[at].x, dots.cells[at].y};  // as seen from straight above
       }
-      const auto seen = in_image(flat, scene[k].contact, states, image_state);
-      const auto r = ratio(dots, scene[k].contact, states, state);
+      const auto seen = in_image(flat, scene[k].contact);
+      const auto r = ratio(dots, scene[k].contact);
       const auto load =
           contact_load(test::noisy(scene[k].force_n, 0.015, random),
                        test::noisy(scene[k].moment_n_mm, 0.02, random), dots, scene[k].contact);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 // Stick ratio in space, without and with the friction limit, on finite-element membranes.
 // test_accuracy "[spatial_stick]" -s prints all figures, "[spatial_noise]" those of the page.
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/slip/friction_limit.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/slipping_patch.hpp"
 #include "support/spatial_scene.hpp"
@@ -60,22 +59,20 @@ SceneErrors errors_of(const std::string& name,
                       Index every = 1) {
   const SpatialScene scene(name, every);
   const double along = noise * lateral_mm, deep = noise * depth_mm;
-  const SpatialStickRatio<double> ratio(scene.dots_across(), scene.dots_across(),
-                                        {.lateral_mm = along, .depth_mm = deep});
+  const StickRatio<> fresh(scene.dots_across(), scene.dots_across(), {.noise = along});
   SceneErrors e;
   double frames = 0, answered = 0;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
-    auto state = ratio.start();
+    StickRatio<> stick = fresh;
     FrictionLimit<double> limit;
-    test::Image<DotState> states(scene.dots_across(), scene.dots_across());
     for (Index k = 0; k < scene.size(); ++k) {
       auto dots = scene[k].dots;
       for (auto& p : dots.cells) {
         const double x = random.normal(), y = random.normal(), z = random.normal();
         p = {p.x + along * x, p.y + along * y, p.z + deep * z};
       }
-      const auto r = ratio(dots, scene[k].contact, states, state);
+      const auto r = stick(dots, scene[k].contact);
       const auto load = contact_load(test::noisy(scene[k].force_n, noise * 0.015, random),
                                      test::noisy(scene[k].moment_n_mm, noise * 0.02, random), dots,
                                      scene[k].contact);
@@ -158,10 +155,10 @@ struct EdgeOfBall {
     double frames = 0;
     for (int seed = 1; seed <= recordings; ++seed) {
       test::Random random(static_cast<std::uint64_t>(seed));
-      auto state = ratio_.start();
+      stick_.reset();
       for (Index k = 0; k < scene_.size(); ++k) {
-        const auto r = ratio_(noisy(scene_[k].dots, lateral_mm, depth_mm, random),
-                              scene_[k].contact, states_, state);
+        const auto r =
+            stick_(noisy(scene_[k].dots, lateral_mm, depth_mm, random), scene_[k].contact);
         if (k >= 2 && test::dots_of_both(scene_[k], scene_[k]) >= 6 && r.updated()) {
           add(scene_[k - r.reference_age], scene_[k]);
           frames += 1;
@@ -181,7 +178,7 @@ struct EdgeOfBall {
     double all = 0, inside = 0, stick_inside = 0;
     for (Index i = 0; i < now.dots.rows(); ++i) {
       for (Index j = 0; j < now.dots.cols(); ++j) {
-        if (!in_both(then, now, i, j) || states_(i, j) < DotState::slip) {
+        if (!in_both(then, now, i, j) || stick_.states()(i, j) < DotState::slip) {
           continue;
         }
         const bool edge = is_at_edge(then, now, i, j);
@@ -189,7 +186,7 @@ struct EdgeOfBall {
         const double lift = std::abs(dot(now.dots(i, j) - motion(then.dots(i, j)), normal));
         all += 1;
         inside += edge ? 0 : 1;
-        stick_inside += !edge && states_(i, j) == DotState::stick ? 1 : 0;
+        stick_inside += !edge && stick_.states()(i, j) == DotState::stick ? 1 : 0;
         lifted += lift > limit ? 1 : 0;
         lifted_inside += lift > limit && !edge ? 1 : 0;
         lift_mm += lift > limit ? lift : 0;
@@ -203,9 +200,7 @@ struct EdgeOfBall {
   }
 
   SpatialScene scene_{"roll"};
-  SpatialStickRatio<double> ratio_{
-      scene_.dots_across(), scene_.dots_across(), {.lateral_mm = lateral_mm, .depth_mm = depth_mm}};
-  test::Image<DotState> states_{scene_.dots_across(), scene_.dots_across()};
+  StickRatio<> stick_{scene_.dots_across(), scene_.dots_across(), {.noise = lateral_mm}};
 };
 
 }  // namespace
@@ -272,15 +267,14 @@ Spread add_spread(const std::string& name, double noise, Index every, Spreads& c
   const SpatialScene scene(name, every);
   const Index across = scene.dots_across();
   const double along = noise * lateral_mm, deep = noise * depth_mm;
-  const SpatialStickRatio<double> ratio(across, across, {.lateral_mm = along, .depth_mm = deep});
-  std::map<std::array<Index, 2>, std::vector<SpatialStickResult<double>>> answers;
+  const StickRatio<> fresh(across, across, {.noise = along});
+  std::map<std::array<Index, 2>, std::vector<StickResult<>>> answers;
   for (int seed = 1; seed <= recordings; ++seed) {
     test::Random random(static_cast<std::uint64_t>(seed));
-    auto state = ratio.start();
-    test::Image<DotState> states(across, across);
+    StickRatio<> stick = fresh;
     for (Index k = 0; k < scene.size(); ++k) {
       const auto dots = noisy(scene[k].dots, along, deep, random);
-      const auto r = ratio(dots, scene[k].contact, states, state);
+      const auto r = stick(dots, scene[k].contact);
       if (k >= 2 && test::dots_of_both(scene[k], scene[k]) >= 6 && r.updated()) {
         answers[{k, r.reference_age}].push_back(r);
       }

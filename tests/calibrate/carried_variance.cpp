@@ -11,7 +11,7 @@
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
 #include "support/pad.hpp"
@@ -118,13 +118,11 @@ Camera<S> camera_of(const Places<S>& p) {
 /// Slips of four dots of a dragged patch whose edge begins to slip. Pixels and depths are those of
 /// the default camera; `p` is the camera that the method assumes.
 template <class S>
-std::array<Point3<S>, 4> slips_of(const Places<S>& p) {
+std::array<Point2<S>, 4> slips_of(const Places<S>& p) {
   constexpr Index n = 21;
   const Camera<double> seen_by;
   const Camera<S> camera = camera_of(p);
-  const SpatialStickRatio<S> ratio(n, n);
-  auto state = ratio.start();
-  test::Image<DotState> states(n, n);
+  StickRatio<S> ratio(n, n, {.noise = 0.005});
   test::SlippingPatch patch;
   const auto show = [&] {
     const LazyView dots(n, n, [&](Index i, Index j) {
@@ -132,15 +130,15 @@ std::array<Point3<S>, 4> slips_of(const Places<S>& p) {
       const auto px = pixel_of(seen_by, at);
       return point_at(camera, S(px.y), S(px.x), S(at.z));
     });
-    return ratio(dots, patch.contact, states, state);
+    return ratio(dots, patch.contact);
   };
   (void)show();
   patch.step(test::moved_by({0.002, 0.003, 0.01}, {0, 0, 28}, {0.5, 0.2, 0}), 0.7);
   REQUIRE(show().updated());
-  std::array<Point3<S>, 4> slips;
+  std::array<Point2<S>, 4> slips;
   std::size_t k = 0;
   for (const Index col : {7, 10, 12, 13}) {
-    slips[k++] = state.slips()(10, col).slip_mm;
+    slips[k++] = ratio.slips()(10, col);
   }
   return slips;
 }
@@ -251,10 +249,9 @@ TEST_CASE("slips of dots follow the camera") {
     for (std::size_t dot = 0; dot < plain.size(); ++dot) {
       CAPTURE(k, dot);
       CHECK(dual[dot].x.value == Approx(plain[dot].x).margin(1e-12));
-      const Point3<double> slope = 1 / (2 * step) * (more[dot] - less[dot]);
-      for (const auto& [found, wanted] : {std::pair{dual[dot].x.slopes[k], slope.x},
-                                          {dual[dot].y.slopes[k], slope.y},
-                                          {dual[dot].z.slopes[k], slope.z}}) {
+      const Point2<double> slope = 1 / (2 * step) * (more[dot] - less[dot]);
+      for (const auto& [found, wanted] :
+           {std::pair{dual[dot].x.slopes[k], slope.x}, {dual[dot].y.slopes[k], slope.y}}) {
         CHECK(found == Approx(wanted).epsilon(1e-5).margin(1e-7 / at[k]));
         largest = std::fmax(largest, std::abs(wanted));
       }

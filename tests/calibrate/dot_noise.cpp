@@ -17,6 +17,7 @@
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
+#include "support/slipping_dots.hpp"
 
 using namespace fingerpad;
 using test::begins_with;
@@ -26,8 +27,6 @@ using test::Random;
 using test::refusal;
 
 namespace {
-
-constexpr StickTest test_px = {.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
 
 using Points = Image<Point2<double>>;
 using Flags = Image<unsigned char>;
@@ -137,15 +136,13 @@ Recording record(const Slipping& s) {
 }
 
 /// Mean error of the ratio over the frames with an update.
-double mean_error(const Recording& recording, const StickTest& test) {
-  const StickRatio<> estimator(21, 21, test);
-  auto state = estimator.start();
-  Image<DotState> states(21, 21);
+double mean_error(const Recording& recording, const StickOptions& options) {
+  StickRatio<> stick(21, 21, options);
   MeanOfSeeds errors;
   for (std::size_t t = 0; t < recording.dots.size(); ++t) {
-    const auto result = estimator(recording.dots[t], recording.contact, states, state);
+    const auto result = stick(recording.dots[t], recording.contact);
     if (result.updated()) {
-      errors.add(std::abs(static_cast<double>(result.stick_ratio) - recording.truth[t]));
+      errors.add(std::abs(result.stick_ratio - recording.truth[t]));
     }
   }
   return errors.mean();
@@ -426,81 +423,16 @@ TEST_CASE("false slip: as often as drawn", "[stick]") {
   }
 }
 
-TEST_CASE("false slip: as often as the stick ratio says", "[stick]") {
-  // Everything sticks, so every slip is false. d_max is the largest of many displacements,
-  // therefore it exceeds the motion by noise, which widens the threshold in proportion.
-  const double noise_px = 0.05;
-  StickTest test = test_px;
-  test.slip = slip_threshold_for(noise_px, 0.05);
-  const StickRatio<StickConsensus<Freedom::translation>, UpdatedReference, NoDenoising, double>
-      estimator(41, 41, test);
-  auto state = estimator.start();
-  Image<DotState> states(41, 41);
-  const Flags contact(41, 41, 1);
-  Random random(2);
-  double slip = 0, expected = 0, dots = 0;
-  for (int t = 0; t < 40; ++t) {
-    const auto now = jittered(moved(pattern(41, 41), 2.5 * t, 0), noise_px, random);
-    const auto result = estimator(now, contact, states, state);
-    if (result.updated()) {
-      const double widened_px = test.slip * result.furthest_px / test.reference;
-      slip += static_cast<double>(result.slip);
-      expected += static_cast<double>(result.dots_in_contact()) *
-                  false_slip_probability(widened_px, noise_px);
-      dots += static_cast<double>(result.dots_in_contact());
-    }
-  }
-  CAPTURE(slip, expected, dots);
-  CHECK(dots > 39 * 1600);
-  CHECK(std::abs(slip - expected) < 3 * std::sqrt(expected));
-}
-
-TEST_CASE("thresholds from noise: no sticking dot slips more often than was asked", "[stick]") {
-  const auto share_of = [](const auto& motion, const auto& denoising, double gain, double share) {
-    StickTest test = test_px;
-    test.slip = slip_threshold_for(0.06 * gain, share);
-    test.free_frames = 0;
-    const StickRatio estimator(21, 21, test, motion, UpdatedReference(), denoising);
-    Random random(5);
-    const Flags contact = disc(21, 21, 8.2);
-    Image<DotState> states(21, 21);
-    double slip = 0, dots = 0;
-    for (int t = 0; t < 300; ++t) {
-      auto state = estimator.start();
-      const auto then = jittered(pattern(21, 21), 0.06, random);
-      (void)estimator(then, contact, states, state);
-      const auto now = jittered(moved(pattern(21, 21), 2.0, 1.0), 0.06, random);
-      const auto result = estimator(now, contact, states, state);
-      REQUIRE(result.updated());
-      slip += static_cast<double>(result.slip);
-      dots += static_cast<double>(result.dots_in_contact());
-    }
-    return slip / dots;
-  };
-  using Consensus = StickConsensus<Freedom::translation>;
-  for (const double share : {0.02, 0.2}) {
-    // d_max exceeds U by some 15 %, and only the edge has the assumed noise
-    for (const double got : {share_of(Consensus(), NoDenoising(), 1, share),
-                             share_of(Consensus(), ResidualMean(), denoising_gain(3, 2), share)}) {
-      CHECK(got < share);
-      CHECK(got > share / 40);
-    }
-  }
-}
-
 TEST_CASE("choice of U: the error hardly depends on it", "[stick]") {
   for (const double noise_px : {0.06, 0.14}) {
     const Recording recording = record({.noise_px = noise_px});
-    StickTest test = test_px;
-    test.free_frames = 0;
-    test.slip = slip_threshold_for(noise_px * denoising_gain(3, 2), 0.02);
-    test.store = slip_threshold_for(noise_px, 0.01 / 441);
+    const double slip_px = slip_threshold_for(noise_px * denoising_gain(3, 2), 0.02);
     std::string table = "\n    U   error of the ratio\n";
     for (int k = noise_px < 0.1 ? 2 : 6; k < 13; k += 2) {
-      test.reference = 0.5 * std::pow(2.0, k / 3.0);
-      const double error = mean_error(recording, test);
+      const double reference_px = 0.5 * std::pow(2.0, k / 3.0);
+      const double error = mean_error(recording, test::stick_options(reference_px, slip_px));
       char line[80];
-      std::snprintf(line, sizeof line, "%5.2f  %.3f\n", test.reference, error);
+      std::snprintf(line, sizeof line, "%5.2f  %.3f\n", reference_px, error);
       table += line;
       CHECK(error < 0.035);
     }

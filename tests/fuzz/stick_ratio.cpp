@@ -6,7 +6,6 @@
 
 #include <cstdint>
 
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;
@@ -23,51 +22,32 @@ void require_ratio(const Ratio& ratio) {
   require(!is_finite(ratio) || (ratio >= 0 && ratio <= 1), "a ratio is in [0, 1]");
 }
 
-/// Some frames through an estimator with a state; the last one again from a copy of the state.
-template <class Point, class Estimator, class Check>
-void follow(Input& in, const Estimator& estimate, Index rows, Index cols, const Check& check) {
-  auto state = estimate.start();
-  Grid<DotState> states(rows, cols), again(rows, cols);
+/// Some frames; each again from a copy.
+template <class Point>
+void follow_stick(Input& in, Index rows, Index cols, double largest_noise) {
+  StickRatio<> stick(rows, cols, {.noise = in.number(0, largest_noise)});
   for (Index frames = in.whole(1, 6); frames > 0; --frames) {
     const Grid<Point> dots = any_dots<Point>(in, rows, cols);
     const Grid<std::uint8_t> contact = any_contact(in, rows, cols);
-    auto copy = state;
-    const auto look = [&](auto& to, auto& memory) {
-      return estimate(dots.view(), contact.view(), to.view(), memory);
-    };
-    const auto seen = fuzz::frame([&] { return look(states, state); });
-    const auto same = fuzz::frame([&] { return look(again, copy); });
-    check(seen, same);
-    require(states == again, "a copied state gives the same bits");
+    StickRatio<> copy = stick;
+    const auto seen = fuzz::frame([&] { return stick(dots.view(), contact.view()); });
+    const auto same = fuzz::frame([&] { return copy(dots.view(), contact.view()); });
+    require_ratio(seen.stick_ratio);
+    require(seen.status == same.status, "the same status");
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        require(stick.states()(i, j) == copy.states()(i, j), "a copy gives the same bits");
+      }
+    }
   }
 }
 
 void try_all(Input& in) {
   const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
-  switch (in.whole(0, 1)) {
-    case 0: {
-      StickTest test;
-      test.reference = in.number(0.1, 5);
-      test.store = in.number(0, 2);
-      test.slip = in.number(0.01, 1);
-      test.pitch = in.whole(0, 1) == 0 ? 0 : 1;
-      follow<Point2<float>>(in, StickRatio<>(rows, cols, test), rows, cols,
-                            [](const auto& seen, const auto& same) {
-                              require_ratio(seen.stick_ratio);
-                              require(seen.status == same.status, "the same status");
-                            });
-      break;
-    }
-    default: {
-      SpatialStickTest test;
-      test.lateral_mm = in.number(0.001, 0.1);
-      test.depth_mm = in.number(0.001, 0.2);
-      follow<Point3<double>>(in, SpatialStickRatio<>(rows, cols, test), rows, cols,
-                             [](const auto& seen, const auto& same) {
-                               require_ratio(seen.stick_ratio);
-                               require(seen.status == same.status, "the same status");
-                             });
-    }
+  if (in.whole(0, 1) == 0) {
+    follow_stick<Point2<float>>(in, rows, cols, 0.3);
+  } else {
+    follow_stick<Point3<double>>(in, rows, cols, 0.1);
   }
 }
 

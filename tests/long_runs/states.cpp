@@ -14,7 +14,6 @@
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -144,25 +143,24 @@ TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
 
 TEST_CASE("long runs: after a lost contact a stick ratio is that of a start", "[long_run]") {
   Any any;
-  const StickRatio<> stick(6, 6);
-  auto state = stick.start(), fresh = stick.start();
-  test::Image<DotState> states(6, 6);
+  StickRatio<> state(6, 6), fresh(6, 6);
   test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
   float shift = 0;
   bool sound = true;
   for (long k = 0; k < frames(); ++k) {
     shift = any.once_in(100) ? 0 : shift + static_cast<float>(any.number(-1, 1.2));
     const double time_s = 0.03 * static_cast<double>(k) * (any.once_in(100) ? -1 : 1);
-    const auto r =
-        stick(lattice(any, shift), any.once_in(40) ? none : contact, states, state, time_s);
+    const auto r = state(lattice(any, shift), any.once_in(40) ? none : contact, time_s);
     sound = sound && (std::isnan(r.stick_ratio) || (r.stick_ratio >= 0 && r.stick_ratio <= 1));
   }
   CHECK(sound);
-  (void)stick(lattice(any, 0), none, states, state);
-  (void)stick(lattice(any, 0), none, states, fresh);
+  state.reset();
+  const auto free = lattice(any, 0);
+  (void)state(free, none);
+  (void)fresh(free, none);
   for (int k = 0; k < 20; ++k) {
     const auto dots = lattice(any, 0.7F * static_cast<float>(k));
-    const auto a = stick(dots, contact, states, state), b = stick(dots, contact, states, fresh);
+    const auto a = state(dots, contact), b = fresh(dots, contact);
     CHECK(a.status == b.status);
     CHECK((a.stick_ratio == b.stick_ratio || std::isnan(b.stick_ratio)));
   }
@@ -218,16 +216,13 @@ TEST_CASE("long runs: a window of taxels forgets all that was before it", "[long
 
 TEST_CASE("long runs: after a reset a stick ratio in space is that of a start", "[long_run]") {
   Any any;
-  const SpatialStickRatio<> stick(6, 6);
-  auto state = stick.start(), fresh = stick.start();
-  test::Image<DotState> states(6, 6);
+  StickRatio<> state(6, 6, {.noise = 0.005}), fresh = state;
   const test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
   double shift_mm = 0;
   bool sound = true;
   for (long k = 0; k < frames(); ++k) {
     shift_mm = any.once_in(100) ? 0 : shift_mm + any.number(-0.05, 0.06);
-    const auto r =
-        stick(dots_in_space(any, shift_mm), any.once_in(40) ? none : contact, states, state);
+    const auto r = state(dots_in_space(any, shift_mm), any.once_in(40) ? none : contact);
     sound = sound && (std::isnan(r.stick_ratio) || (r.stick_ratio >= 0 && r.stick_ratio <= 1));
     if (any.once_in(3000)) {
       state.reset();
@@ -237,7 +232,7 @@ TEST_CASE("long runs: after a reset a stick ratio in space is that of a start", 
   state.reset();
   for (int k = 0; k < 20; ++k) {
     const auto dots = dots_in_space(any, 0.03 * k);
-    const auto a = stick(dots, contact, states, state), b = stick(dots, contact, states, fresh);
+    const auto a = state(dots, contact), b = fresh(dots, contact);
     CHECK(a.status == b.status);
     CHECK((a.stick_ratio == b.stick_ratio || std::isnan(b.stick_ratio)));
   }

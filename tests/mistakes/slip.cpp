@@ -19,7 +19,6 @@
 #include "fingerpad/published/stick_ratio.hpp"
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/recoil.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/gel_frames.hpp"
 #include "support/refusal.hpp"
@@ -27,7 +26,6 @@
 
 using namespace fingerpad;
 using test::ContactFlags;
-using test::DotStates;
 using test::Image;
 using test::PointsPx;
 using test::SlippingDots;
@@ -99,13 +97,13 @@ const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> all = {
       {"none", {"updated", "updated", "ok", "measured", "ok", "updated"}, [](PointsPx&, int) {}},
       {"dots in mm",
-       {"updated", "wrong scale", "another motion", "another shift", "refused", "no dots"},
+       {"updated", "not in order", "another motion", "another shift", "refused", "no dots"},
        each([](auto& p) { return mm_per_px * p; })},
       {"dots in m",
-       {"updated", "wrong scale", "no pose", "another shift", "refused", "no dots"},
+       {"updated", "not in order", "no pose", "another shift", "refused", "no dots"},
        each([](auto& p) { return mm_per_px / 1000 * p; })},
       {"dots in shares of the frame",
-       {"updated", "wrong scale", "no pose", "another shift", "refused", "no dots"},
+       {"false slip", "not in order", "no pose", "another shift", "refused", "no dots"},
        each([](auto& p) {
          return Point2<double>{p.x / 640, p.y / 480};
        })},
@@ -139,17 +137,17 @@ const std::vector<Mistake>& mistakes() {
        {"not in order", "not in order", "no pose", "not rigid", "refused", "no dots"},
        [](PointsPx& dots, int k) { shuffle(dots, static_cast<std::uint64_t>(k)); }},
       {"column by column from frame 6 on",
-       {"jumped", "jumped", "no pose", "not rigid", "no answer", "updated"},
+       {"not in order", "not in order", "no pose", "not rigid", "no answer", "updated"},
        renamed([](Index i, Index j, int k) {
          return k < 6 ? DotIndex{i, j} : DotIndex{j, i};
        })},
       {"shifted by one from frame 6 on",
-       {"jumped", "jumped", "another motion", "another shift", "no answer", "updated"},
+       {"not in order", "not in order", "another motion", "another shift", "no answer", "updated"},
        renamed([](Index i, Index j, int k) {
          return DotIndex{i, k < 6 ? j : j + 1};
        })},
       {"two halves exchanged from frame 6 on",
-       {"jumped", "jumped", "no pose", "not rigid", "no answer", "updated"},
+       {"not in order", "not in order", "no pose", "not rigid", "no answer", "updated"},
        renamed([](Index i, Index j, int k) {
          return DotIndex{i, k < 6 ? j : j + across / 2};
        })},
@@ -177,12 +175,12 @@ const std::vector<Mistake>& mistakes() {
        {"updated", "updated", "ok", "measured", "ok", "updated"},
        one_at(1.7e308)},
       {"all dots a billion px away",
-       {"no dots", "no dots", "no pose", "no dots", "no answer", "no dots"},
+       {"too few dots", "too few dots", "no pose", "no dots", "no answer", "no dots"},
        each([](auto& p) {
          return Point2<double>{p.x + 1e9, p.y};
        })},
       {"dots times 1e300",
-       {"no dots", "no dots", "no pose", "no dots", "no answer", "no dots"},
+       {"too few dots", "too few dots", "no pose", "no dots", "no answer", "no dots"},
        each([](auto& p) { return 1e300 * p; })},
       {"half of the dots missing",
        {"updated", "updated", "ok", "another shift", "ok", "updated"},
@@ -192,7 +190,7 @@ const std::vector<Mistake>& mistakes() {
          }
        }},
       {"frozen from frame 6 on",
-       {"standing", "updated", "another motion", "another shift", "ok", "updated"},
+       {"unmoved", "updated", "another motion", "another shift", "ok", "updated"},
        [last = PointsPx()](PointsPx& dots, int k) mutable {
          last = k < 6 ? dots : last;
          dots = last;
@@ -227,16 +225,17 @@ Spatial in_space(const PointsPx& dots) {
 }
 
 /// The last status of a stick ratio, or "false slip".
-template <class Ratio, class Convert>
-std::string said_by_stick(const Ratio& ratio, const Mistake& mistake, const Convert& convert) {
-  auto state = ratio.start();
-  DotStates states(across, across);
+template <class Convert>
+std::string said_by_stick(const StickOptions& options,
+                          const Mistake& mistake,
+                          const Convert& convert) {
+  StickRatio<> stick(across, across, options);
   std::string said;
   bool slip = false;
   drag(mistake, [&](const PointsPx& dots, const ContactFlags& contact) {
-    const auto r = ratio(convert(dots), contact, states, state);
+    const auto r = stick(convert(dots), contact);
     said = name_of(r.status);
-    slip = slip || (r.updated() && static_cast<double>(r.stick_ratio) < 0.9);
+    slip = slip || (r.updated() && r.stick_ratio < 0.9);
   });
   return slip ? "false slip" : said;
 }
@@ -333,8 +332,8 @@ TEST_CASE("mistakes with printed dots", "[mistakes]") {
   for (const Mistake& mistake : mistakes()) {
     INFO(mistake.name);
     const Answers said = {
-        said_by_stick(StickRatio<>(across, across), mistake, as_they_are),
-        said_by_stick(SpatialStickRatio<>(across, across), mistake, in_space),
+        said_by_stick({}, mistake, as_they_are),
+        said_by_stick({.noise = 0.005}, mistake, in_space),
         said_by_motion(mistake),
         said_by_shift(mistake),
         said_by_recoil(mistake),
@@ -346,12 +345,10 @@ TEST_CASE("mistakes with printed dots", "[mistakes]") {
 
 TEST_CASE("a dot from a million px on is none that is out of place", "[mistakes]") {
   const auto out_of_place = [](double far_px) {
-    const StickRatio<> ratio(across, across);
-    auto state = ratio.start();
-    DotStates states(across, across);
+    StickRatio<> stick(across, across);
     Index out = 0;
     drag({"", {}, one_at(far_px)}, [&](const PointsPx& dots, const ContactFlags& contact) {
-      out = ratio(dots, contact, states, state).out_of_place;
+      out = stick(dots, contact).out_of_place;
     });
     return out;
   };
@@ -370,7 +367,6 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
     });
     return std::array{
         refusal([&] { const StickRatio<> r(rows, cols); }),
-        refusal([&] { const SpatialStickRatio<> r(rows, cols); }),
         refusal([&] { const ObjectMotion<> r(rows, cols); }),
         refusal([&] { const ContactShift<> r(px); }),
         refusal([&] { const Recoil<> r(px); }),
@@ -394,25 +390,21 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
     }
   }
   const std::string too_many = "cells in memory = 4096000000, must be <= 100000000";
-  CHECK(refusal([] {
-          const StickRatio r(1000, 1000, {}, {}, UpdatedReference{.capacity = 4096});
-        }) == "StickRatio: " + too_many);
-  CHECK(refusal([] { const SpatialStickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
-        "SpatialStickRatio: " + too_many);
+  CHECK(refusal([] { const StickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
+        "StickRatio: " + too_many);
 }
 
 namespace {
 
 /// Response for a ball that drags a gel along without slip, with contact flags of the dots under
 /// the ball or of all dots. The gel follows around the ball, the less the further away.
-template <class Ratio, class Convert>
-std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& convert) {
+template <class Convert>
+std::string said_of_gel(const StickOptions& options, bool all_touch, const Convert& convert) {
   const test::GelCamera camera{.pitch_mm = 1.2, .jitter_px = 0.06};
   test::BallOnGel<> ball({.friction = 5});
   test::Random random(3);
-  auto state = ratio.start();
-  DotStates states(camera.dot_rows(), camera.dot_cols());
-  ContactFlags contact(states.rows(), states.cols(), all_touch ? 1 : 0);
+  StickRatio<> stick(camera.dot_rows(), camera.dot_cols(), options);
+  ContactFlags contact(stick.rows(), stick.cols(), all_touch ? 1 : 0);
   std::string said;
   for (int k = 0; k <= frames; ++k) {
     ball.drag(10, {0.1 * k, 0});
@@ -421,11 +413,10 @@ std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& conve
       const auto from_ball = camera.mm_of(dots.cells[n].y, dots.cells[n].x) - ball.ball_mm();
       contact.cells[n] = norm(from_ball) < 0.9 * ball.radius_mm() ? 1 : 0;
     }
-    const auto r = ratio(convert(dots), contact, states, state);
-    said =
-        r.updated() && static_cast<double>(r.stick_ratio) < 0.9 ? "false slip" : name_of(r.status);
+    const auto r = stick(convert(dots), contact);
+    said = r.updated() && r.stick_ratio < 0.9 ? "false slip" : name_of(r.status);
     CHECK((r.ok() || std::isnan(r.stick_ratio)));
-    CHECK((said != "no outline of the contact" || std::isnan(r.stick_ratio)));
+    CHECK((said != "no outline" || std::isnan(r.stick_ratio)));
   }
   return said;
 }
@@ -434,16 +425,12 @@ std::string said_of_gel(const Ratio& ratio, bool all_touch, const Convert& conve
 
 TEST_CASE("mistakes with printed dots: all are said to touch", "[mistakes]") {
   const auto as_they_are = [](const PointsPx& dots) -> const PointsPx& { return dots; };
-  const auto both = [](const auto& ratio, const auto& convert) {
-    CHECK(said_of_gel(ratio, false, convert) == "updated");
-    CHECK(said_of_gel(ratio, true, convert) == "no outline of the contact");
+  const auto check = [](StickOptions options, const auto& convert) {
+    CHECK(said_of_gel(options, false, convert) == "updated");
+    CHECK(said_of_gel(options, true, convert) == "no outline");
+    options.covers_pattern = true;  // is believed
+    CHECK(said_of_gel(options, true, convert) == "false slip");
   };
-  constexpr Index rows = 16, cols = 21;  // of the gel's camera
-  both(StickRatio<>(rows, cols), as_they_are);
-  both(SpatialStickRatio<>(rows, cols), in_space);
-  // the option that the object covers the pattern is believed
-  CHECK(said_of_gel(StickRatio<>(rows, cols, {.covers_pattern = true}), true, as_they_are) ==
-        "false slip");
-  CHECK(said_of_gel(SpatialStickRatio<>(rows, cols, {.covers_pattern = true}), true, in_space) ==
-        "false slip");
+  check({.noise = 0.06}, as_they_are);
+  check({.noise = 0.005}, in_space);
 }

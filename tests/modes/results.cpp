@@ -126,15 +126,12 @@ void tell_dots(Results& tell) {
   ObjectMotion<> motion(9, 9);
   ContactShift<> shift(view(free));
   static TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
-  static const SpatialStickRatio<> stick(9, 9);
-  auto stick_state = stick.start();
-  std::vector<DotState> states(81);
+  StickRatio<> stick(9, 9, {.noise = 0.005});
   for (int frame = 0; frame < 8; ++frame) {
     auto now = dots_moved<Point>(0.1 * frame, 0.02 * frame);
     const auto moved = motion(view(now), contact);
     const auto shifted = shift(view(now), contact);
-    const auto ratio =
-        stick(view(now), contact, StridedView<DotState>(states.data(), 9, 9, 9), stick_state);
+    const auto ratio = stick(view(now), contact);
     const auto load = field(view(now), contact, 0.01);
     if (frame == 7) {
       tell("motion ok", moved.ok() ? 1 : 0);

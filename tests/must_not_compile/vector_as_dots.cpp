@@ -6,20 +6,18 @@
 
 #include "fingerpad/slip/stick_ratio.hpp"
 
-const fingerpad::StickRatio<> stick_ratio(9, 9);
-auto state = stick_ratio.start();
+fingerpad::StickRatio<> stick(9, 9);
 std::vector<fingerpad::Point2<double>> dots_px(81);
 std::vector<unsigned char> contact(81);
-std::vector<fingerpad::DotState> states(81);
 
 #ifdef FINGERPAD_MUST_NOT_COMPILE
 static void good_or_bad() {
-  (void)stick_ratio(dots_px, contact, states, state);
+  (void)stick(dots_px, contact);
 }
 #else
 static void good_or_bad() {
   using fingerpad::grid_of;
-  (void)stick_ratio(grid_of(dots_px, 9, 9), grid_of(contact, 9, 9), grid_of(states, 9, 9), state);
+  (void)stick(grid_of(dots_px, 9, 9), grid_of(contact, 9, 9));
 }
 #endif
 int main() {

@@ -64,7 +64,7 @@ Outcome camera_and_more() {
       {"pad", {{"base_radius_mm", 18}, {"apex_height_mm", 40.0 / 3}}},
       {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
       {"contact", {{"threshold_per_mm", 0.1 / 7}}},
-      {"stick", {{"reference_px", 5.0 / 3}, {"store_px", 1.0 / 3}, {"slip_px", 1.0 / 7}}},
+      {"stick", {{"noise_px", 1.0 / 7}}},
       {"rim",
        {{"side_dot_length_mm", 0.8 / 3},
         {"membrane_modulus_n_per_mm", 1.0 / 3},
@@ -123,7 +123,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.absorption.c_red_per_mm == 0.1 / 3);
   CHECK(sensor.pad.apex_height_mm == 40.0 / 3);
   CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
-  CHECK(sensor.stick.slip == 1.0 / 7);
+  CHECK(sensor.stick.noise == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
   CHECK(sensor.rim->mooney_share == 0.1 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);

@@ -310,7 +310,7 @@ TEST_CASE("thresholds of the stick ratio come from sensor.json") {
                          [](const auto& row) { return row.at("stick_ratio_updated") == "1"; });
   };
   CHECK(answers("{}") > 0);
-  CHECK(answers(R"({"stick": {"reference_px": 9}})") == 0);
+  CHECK(answers(R"({"stick": {"noise_px": 0.3}})") == 0);
 }
 
 TEST_CASE("dots.csv serves a dots-only recording, too") {
@@ -347,7 +347,7 @@ TEST_CASE("the sensor.json of a dots-only recording is refused with the key's na
       Fault{R"({"dots": {"bright": 1}})", "dots.bright is 1 (a number), must be true or false"},
       Fault{R"({"dots": {"diameter_px": -2}})", "dots.diameter_px = -2, must be > 0"},
       Fault{R"({"stick": {"slip": 1}})", "unknown key stick.slip "},
-      Fault{R"({"stick": {"reference_px": 0}})", "reference = 0"},
+      Fault{R"({"stick": {"noise_px": 0}})", "stick.noise_px = 0"},
       Fault{R"({"reference": {"fram": "a.png"}})", "unknown key reference.fram "},
       Fault{R"({"reference": {"frame": "none.png"}})", "none.png: there is no such file"},
       Fault{R"({"absorption": {}})", "camera is missing"},

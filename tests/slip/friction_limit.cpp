@@ -12,6 +12,7 @@
 #include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/recoil.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/slipping_patch.hpp"
@@ -228,8 +229,7 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
 TEST_CASE("friction limit: dots that fall back are asked where the load falls with them",
           "[friction_limit]") {
   FrictionLimit<double> limit;
-  SpatialStickResult<double> seen{
-      .status = StickStatus::updated, .stick_ratio = 0.1, .ratio_sd = 0};
+  StickResult<double> seen{.status = StickStatus::updated, .stick_ratio = 0.1, .ratio_sd = 0};
   (void)limit(pull(2.2), seen);
   (void)limit(pull(2.2), seen);
   seen.status = StickStatus::falls_back;
@@ -310,11 +310,11 @@ TEST_CASE("friction limit: which dots hold", "[friction_limit]") {
     return states;
   };
   const auto ratio = [](double share, double sd) {
-    return SpatialStickResult<double>{
+    return StickResult<double>{
         .status = StickStatus::updated, .stick_ratio = share, .ratio_sd = sd};
   };
   FrictionLimit<double> limit;
-  const auto without_force = [&](const SpatialStickResult<double>& seen) {
+  const auto without_force = [&](const StickResult<double>& seen) {
     return held(limit(ContactLoad<double>{}, seen));
   };
   SECTION("those whose state says so") {
@@ -327,7 +327,7 @@ TEST_CASE("friction limit: which dots hold", "[friction_limit]") {
     CHECK(without_force(ratio(0.19, 0)) == "0000");
     CHECK(without_force(ratio(0.9, none)) == "0000");
     auto kept = ratio(0.1, 0.05);  // tells nothing of this frame
-    kept.status = StickStatus::standing;
+    kept.status = StickStatus::unmoved;
     CHECK(without_force(kept) == "1101");
   }
   SECTION("none while friction shows a slide") {

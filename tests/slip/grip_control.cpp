@@ -360,11 +360,10 @@ TEST_CASE("grip control: with friction the force follows the load", "[grip_contr
 
 TEST_CASE("grip control: update of a stick ratio", "[grip_control]") {
   CHECK(update_of(StickStatus::updated) == RatioUpdate::fresh);
-  CHECK(update_of(StickStatus::standing) == RatioUpdate::unmoved);
-  CHECK(update_of(StickStatus::no_reference) == RatioUpdate::unmoved);
+  CHECK(update_of(StickStatus::unmoved) == RatioUpdate::unmoved);
   CHECK(update_of(StickStatus::no_contact) == RatioUpdate::no_contact);
-  for (const auto status : {StickStatus::too_few_dots, StickStatus::no_dots, StickStatus::jumped,
-                            StickStatus::restarted}) {
+  for (const auto status : {StickStatus::too_few_dots, StickStatus::not_in_order,
+                            StickStatus::no_outline, StickStatus::refused}) {
     CHECK(update_of(status) == RatioUpdate::missing);
   }
 }

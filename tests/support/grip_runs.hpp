@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Closed loops of a simulated fingertip (examples/grip) at 30 frames/s. Dots in space and the force
-// of the contact, both with noise, go through SpatialStickRatio and FrictionLimit into GripControl,
+// of the contact, both with noise, go through StickRatio and FrictionLimit into GripControl,
 // whose force goes back to the fingertip.
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "examples/grip/slipping_load.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/pad.hpp"
 
 namespace test {
@@ -89,16 +89,13 @@ GripRun run_grip(const fingerpad::GripOptions<S>& options,
   const grip::Fingertip tip{.friction = friction};
   double force_n = vary.first * first_n / friction, real_n = force_n;
   grip::SlippingLoad load(tip, first_n, force_n);
-  const SpatialStickRatio<S> stick_ratio(
-      tip.dots, tip.dots, {.lateral_mm = vary.lateral_mm, .depth_mm = vary.depth_mm});
+  StickRatio<S> stick_ratio(tip.dots, tip.dots, {.noise = vary.lateral_mm});
   FrictionLimit<S> limit;
   GripControl<S> control(options, S(force_n));
-  auto stick_state = stick_ratio.start();
   Random random(static_cast<std::uint64_t>(1 + number + 100 * static_cast<int>(scene)));
   Image<Point3<double>> dots = free_dots(tip);
   Image<unsigned char> touch(tip.dots, tip.dots);
-  Image<DotState> states(tip.dots, tip.dots);
-  (void)stick_ratio(dots, touch, states, stick_state, -1);  // the pad before the grip
+  (void)stick_ratio(dots, touch, -1);  // the pad before the grip
   double sum = 0, frames = 0;
   for (double time_s = 0; time_s < end_s && load.slip_mm() < 20; time_s += frame_s) {
     const double load_n = (std::min)(first_n + rise * time_s, last_n);
@@ -120,7 +117,7 @@ GripRun run_grip(const fingerpad::GripOptions<S>& options,
         touch(i, j) = load.touches(int(i), int(j)) ? 1 : 0;
       }
     }
-    const auto stick = stick_ratio(dots, touch, states, stick_state, time_s);
+    const auto stick = stick_ratio(dots, touch, time_s);
     const double normal_n = real_n * (1 + vary.force_share * random.normal());
     const double tangential_n = load.held_n() * (1 + vary.force_share * random.normal());
     const auto slip = limit(ContactLoad<S>{S(normal_n), S(std::abs(tangential_n))}, stick);

@@ -8,12 +8,11 @@
 namespace test {
 
 struct PublishedStick {
-  using State = fingerpad::published::StickRatio<float>;
-  State ratio = {21, 21};  ///< before any frame
+  fingerpad::published::StickRatio<float> ratio = {21, 21};
 
   struct Result {
     fingerpad::published::StickRatioResult<float> printed;
-    float stick_ratio = printed.stick_ratio, furthest_px = printed.furthest_px;
+    float stick_ratio = printed.stick_ratio, furthest = printed.furthest_px;
     Index reference_age = printed.reference_age;
     bool updated() const { return printed.ok(); }
     bool ok() const { return printed.ok(); }
@@ -21,12 +20,13 @@ struct PublishedStick {
 
   Index rows() const { return ratio.rows(); }
   Index cols() const { return ratio.cols(); }
-  State start() const { return ratio; }
-  Result operator()(const PointsPx& dots,
-                    const ContactFlags& contact,
-                    const DotStates&,
-                    State& state) const {
-    return {.printed = state(dots, contact)};
+  Result operator()(const PointsPx& dots, const ContactFlags& contact) {
+    return {.printed = ratio(dots, contact)};
+  }
+  /// The printed method only counts.
+  auto states() const {
+    return fingerpad::LazyView(rows(), cols(),
+                               [](Index, Index) { return fingerpad::DotState::none; });
   }
 };
 

@@ -19,7 +19,15 @@ namespace test {
 
 using PointsPx = Image<fingerpad::Point2<double>>;
 using ContactFlags = Image<std::uint8_t>;
-using DotStates = Image<fingerpad::DotState>;
+
+/// The options from which these U and delta_0 follow, whatever free frames show.
+inline fingerpad::StickOptions stick_options(double reference, double slip) {
+  const double per_noise = 2 * std::sqrt(56.0) / 18 * std::sqrt(std::log(100.0));
+  return {.noise = slip / per_noise,
+          .free_frames = 0,
+          .slip_share = slip / reference,
+          .covers_pattern = false};
+}
 
 struct SlippingPattern {
   Index rows = 21;
@@ -246,7 +254,8 @@ struct StickError {
   double wrong_dots = 0;  ///< share of the dots with a wrong state
 };
 
-/// Errors with noise in each coordinate, for an object dragged in many directions.
+/// Errors with noise in each coordinate, for an object dragged in many directions. `ratio` has seen
+/// no frame.
 template <class Ratio>
 StickError error_of(const Ratio& ratio,
                     SlipScene scene,
@@ -255,15 +264,14 @@ StickError error_of(const Ratio& ratio,
                     int recordings = 12) {
   StickError e;
   double frames = 0, answers = 0, dots = 0;
-  DotStates states(pattern.rows, pattern.cols);
   for (int n = 0; n < recordings; ++n) {
     Random random(static_cast<std::uint64_t>(1 + n));
     SlippingDots truth(pattern);
-    auto state = ratio.start();
-    (void)ratio(noisy(truth.dots, noise_px, random), truth.contact, states, state);
+    Ratio stick = ratio;
+    (void)stick(noisy(truth.dots, noise_px, random), truth.contact);
     for (const SlipStep& step : steps_of(scene, 2.4 * n)) {
       truth.step(step);
-      const auto r = ratio(noisy(truth.dots, noise_px, random), truth.contact, states, state);
+      const auto r = stick(noisy(truth.dots, noise_px, random), truth.contact);
       ++frames;
       if (!r.updated()) {
         continue;
@@ -276,8 +284,8 @@ StickError error_of(const Ratio& ratio,
       e.worst = (std::max)(e.worst, std::abs(error));
       for (Index i = 0; i < pattern.rows; ++i) {
         for (Index j = 0; j < pattern.cols; ++j) {
-          const bool known = states(i, j) >= fingerpad::DotState::slip;
-          const bool sticks = states(i, j) == fingerpad::DotState::stick;
+          const bool known = stick.states()(i, j) >= fingerpad::DotState::slip;
+          const bool sticks = stick.states()(i, j) == fingerpad::DotState::stick;
           dots += known ? 1 : 0;
           e.wrong_dots += known && sticks != truth.has_stuck(i, j, r.reference_age) ? 1 : 0;
         }

@@ -38,9 +38,12 @@ struct StickFrame {
 };
 using StickRecording = std::vector<StickFrame>;
 
+/// Of the printed method; the default has them from its noise, 0.14 px unless they are given.
+using Thresholds = fingerpad::published::StickRatioOptions;
+
 struct StickRecordings {
   Scene scene;
-  fingerpad::StickTest test;
+  Thresholds test;
   std::vector<StickRecording> recordings;
 };
 
@@ -95,13 +98,9 @@ inline std::vector<StickRecording> finite_elements(const std::string& name) {
 inline std::vector<StickRecordings> stick_recordings() {
   using enum test::SlipScene;
   // 1 % of sticking dots are taken for slipping
-  const fingerpad::StickTest steady = {.reference = 2,
-                                       .store = 0.5,
-                                       .slip = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0)),
-                                       .pitch = 1};
-  fingerpad::StickTest closer = steady;
-  closer.reference = 1;
-  closer.store = 0.25;
+  const double slip_px = 2 * 0.416 * 0.06 * std::sqrt(std::log(100.0));
+  const Thresholds steady = {.U = 2, .U_min = 0.5, .delta_0 = slip_px};
+  const Thresholds closer = {.U = 1, .U_min = 0.25, .delta_0 = slip_px};
   std::vector<StickRecordings> all = {{Scene::press, {}, slipping(press)},
                                       {Scene::drag, {}, slipping(shear)},
                                       {Scene::reversal, {}, slipping(reversal)},
@@ -117,30 +116,21 @@ inline std::vector<StickRecordings> stick_recordings() {
   return all;
 }
 
-/// The default for thresholds.
-template <class Ratio = fingerpad::StickRatio<>>
-Ratio made(const fingerpad::StickTest& test) {
-  return Ratio(21, 21, test);
+inline fingerpad::StickRatio<> stick_ratio(const Thresholds& of) {
+  const bool given = of.delta_0 != Thresholds().delta_0;
+  return {21, 21, given ? test::stick_options(of.U, of.delta_0) : fingerpad::StickOptions()};
 }
-/// The printed method, with thresholds in px.
-inline test::PublishedStick printed(const fingerpad::StickTest& test, bool updates = true) {
-  fingerpad::published::StickRatioOptions options = {.updates = updates};
-  if (test.pitch == 1) {
-    options.U = test.reference;
-    options.U_min = test.store;
-    options.delta_0 = test.slip;
-  }
-  return {.ratio = {21, 21, options}};
+inline test::PublishedStick printed(const Thresholds& of) {
+  return {.ratio = {21, 21, of}};
 }
 
 template <class Ratio>
 Errors stick_errors(const Ratio& ratio, const StickRecordings& of) {
-  test::DotStates states(21, 21);
   Errors errors;
   for (const StickRecording& recording : of.recordings) {
-    auto state = ratio.start();
+    Ratio stick = ratio;
     for (const StickFrame& frame : recording) {
-      const auto r = ratio(frame.dots, frame.contact, states, state);
+      const auto r = stick(frame.dots, frame.contact);
       if (r.updated()) {
         errors.add(static_cast<double>(r.stick_ratio) - frame.truth(r.reference_age));
       }
@@ -164,10 +154,10 @@ Effect stick_effect(const std::vector<StickRecordings>& all,
   }
   const StickRecording& drag = all[1].recordings.front();
   const auto run = [&](const auto& ratio) {
-    return [&, states = test::DotStates(21, 21), state = ratio.start()]() mutable {
-      state = ratio.start();
+    return [&, stick = ratio]() mutable {
+      stick = ratio;
       for (const auto& frame : drag) {
-        (void)ratio(frame.dots, frame.contact, states, state);
+        (void)stick(frame.dots, frame.contact);
       }
     };
   };
@@ -181,22 +171,23 @@ Effect stick_effect(const std::vector<StickRecordings>& all,
 }
 
 inline std::vector<Effect> stick_effects() {
-  using namespace fingerpad;
   const auto all = stick_recordings();
+  const auto without = [&](const char* name, const char* off, const auto& switch_off) {
+    return stick_effect(all, name, "`published::StickRatio`", off, printed,
+                        [switch_off](Thresholds options) {
+                          switch_off(options);
+                          return printed(options);
+                        });
+  };
   return {
-      stick_effect(all, "denoise", "`ResidualMean`", "`NoDenoising`", made<>,
-                   made<StickRatio<StickConsensus<>, UpdatedReference, NoDenoising>>),
-      stick_effect(all, "rotation cancel", "`StickConsensus<>`",
-                   "`StickConsensus<Freedom::scaling>`", made<>,
-                   made<StickRatio<StickConsensus<Freedom::scaling>>>),
-      stick_effect(all, "scale cancel", "`StickConsensus<>`", "`StickConsensus<Freedom::rigid>`",
-                   made<>, made<StickRatio<StickConsensus<Freedom::rigid>>>),
-      stick_effect(
-          all, "reference update", "`published::StickRatio`", "`updates = false`",
-          [](const StickTest& test) { return printed(test); },
-          [](const StickTest& test) { return printed(test, false); }),
-      stick_effect(all, "motion of many dots", "`StickConsensus<>`", "`published::StickRatio`",
-                   made<>, [](const StickTest& test) { return printed(test); })};
+      without("denoise", "`S2 = S3 = 0`", [](Thresholds& o) { o.S2 = o.S3 = 0; }),
+      without("rotation cancel", "`cancels_rotation = false`",
+              [](Thresholds& o) { o.cancels_rotation = false; }),
+      without("scale cancel", "`StickScale::none`",
+              [](Thresholds& o) { o.scale = fingerpad::published::StickScale::none; }),
+      without("reference update", "`updates = false`", [](Thresholds& o) { o.updates = false; }),
+      stick_effect(all, "motion of many dots", "`StickRatio<>`", "`published::StickRatio`",
+                   stick_ratio, printed)};
 }
 
 }  // namespace bench::ablation

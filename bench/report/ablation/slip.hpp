@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/spatial_scene.hpp"
 #include "table.hpp"
@@ -85,56 +84,35 @@ inline std::vector<SpatialRecordings> spatial_recordings() {
 class InSpace {
  public:
   explicit InSpace(const SpatialRecordings& of)
-      : ratio_(of.truth.dots_across(),
-               of.truth.dots_across(),
-               {.lateral_mm = of.noise * 0.005, .depth_mm = of.noise * 0.025}),
-        state_(ratio_.start()),
-        states_(ratio_.rows(), ratio_.cols()) {}
-  fingerpad::SpatialStickResult<double> operator()(const test::DotsMm& dots,
-                                                   const test::SpatialFlags& contact,
-                                                   const fingerpad::ContactLoad<double>&) {
-    return ratio_(dots, contact, states_, state_);
+      : stick_(of.truth.dots_across(), of.truth.dots_across(), {.noise = of.noise * 0.005}) {}
+  fingerpad::StickResult<> operator()(const test::DotsMm& dots,
+                                      const test::SpatialFlags& contact,
+                                      const fingerpad::ContactLoad<double>&) {
+    return stick_(dots, contact);
   }
 
  private:
-  fingerpad::SpatialStickRatio<double> ratio_;
-  fingerpad::SpatialStickRatio<double>::State state_;
-  test::Image<fingerpad::DotState> states_;
+  fingerpad::StickRatio<> stick_;
 };
 
-/// Stick ratio in the image of a camera straight above, after free frames that show it the noise.
+/// Stick ratio in the image of a camera straight above.
 class InImage {
  public:
   explicit InImage(const SpatialRecordings& of)
-      : ratio_(of.truth.dots_across(), of.truth.dots_across()),
-        state_(ratio_.start()),
-        seen_(ratio_.rows(), ratio_.cols()),
-        states_(ratio_.rows(), ratio_.cols()) {
-    test::Random random(99);
-    const test::SpatialStep& free = of.truth[0];
-    for (int frame = 0; frame < 9; ++frame) {
-      auto dots = free.dots;
-      for (auto& p : dots.cells) {
-        const double x = random.normal(), y = random.normal();
-        p = {p.x + of.noise * 0.005 * x, p.y + of.noise * 0.005 * y, p.z};
-      }
-      (void)(*this)(dots, test::SpatialFlags(ratio_.rows(), ratio_.cols(), 0), {});
-    }
-  }
-  fingerpad::StickRatioResult<float> operator()(const test::DotsMm& dots,
-                                                const test::SpatialFlags& contact,
-                                                const fingerpad::ContactLoad<double>&) {
+      : stick_(of.truth.dots_across(), of.truth.dots_across(), {.noise = of.noise * 0.005}),
+        seen_(stick_.rows(), stick_.cols()) {}
+  fingerpad::StickResult<> operator()(const test::DotsMm& dots,
+                                      const test::SpatialFlags& contact,
+                                      const fingerpad::ContactLoad<double>&) {
     for (std::size_t k = 0; k < dots.cells.size(); ++k) {
       seen_.cells[k] = {dots.cells[k].x, dots.cells[k].y};
     }
-    return ratio_(seen_, contact, states_, state_);
+    return stick_(seen_, contact);
   }
 
  private:
-  fingerpad::StickRatio<> ratio_;
-  fingerpad::StickRatio<>::State state_;
+  fingerpad::StickRatio<> stick_;
   test::Image<fingerpad::Point2<double>> seen_;
-  test::Image<fingerpad::DotState> states_;
 };
 
 /// One of the two above with the friction limit.
@@ -201,11 +179,11 @@ Effect slip_effect(const std::vector<SpatialRecordings>& all,
 
 inline std::vector<Effect> slip_effects() {
   const auto all = spatial_recordings();
-  return {slip_effect<InSpace, InImage>(all, "space", "`SpatialStickRatio`", "`StickRatio<>`"),
+  return {slip_effect<InSpace, InImage>(all, "space", "dots in space", "dots in the image"),
           slip_effect<WithFriction<InSpace>, InSpace>(all, "friction in space", "`FrictionLimit`",
-                                                      "`SpatialStickRatio` alone"),
+                                                      "`StickRatio` alone"),
           slip_effect<WithFriction<InImage>, InImage>(all, "friction in the image",
-                                                      "`FrictionLimit`", "`StickRatio<>` alone")};
+                                                      "`FrictionLimit`", "`StickRatio` alone")};
 }
 
 }  // namespace bench::ablation

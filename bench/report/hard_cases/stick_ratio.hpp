@@ -38,16 +38,16 @@ struct Cross {
     }
     return sum / S(4);
   }
+  /// atan2 of the sums of then x now and then . now.
   template <class T>
   T angle_of_sums() const {
-    fingerpad::detail::stick::PairSums<T> sums;
+    using std::atan2;
+    T across = T(0), along = T(0);
     for (std::size_t k = 0; k < 4; ++k) {
-      sums.add(T(1), {T(now[k][0]), T(now[k][1])}, {T(then[k][0]), T(then[k][1])});
+      across += T(then[k][0]) * T(now[k][1]) - T(then[k][1]) * T(now[k][0]);
+      along += T(then[k][0]) * T(now[k][0]) + T(then[k][1]) * T(now[k][1]);
     }
-    fingerpad::detail::stick::Similarity<T> map;
-    map.cosine = sums.along;
-    map.sine = sums.across;
-    return map.angle_rad();
+    return T(atan2(across, along));
   }
 };
 
@@ -91,16 +91,12 @@ S published_alpha(const test::PointsPx& then, const test::PointsPx& now) {
 }
 
 template <class S>
-fingerpad::StickRatioResult<S> stick_ratio_between(const test::PointsPx& then,
-                                                   const test::PointsPx& now,
-                                                   const test::ContactFlags& contact) {
-  const fingerpad::StickRatio<fingerpad::StickConsensus<>, fingerpad::UpdatedReference,
-                              fingerpad::ResidualMean, S>
-      ratio(contact.rows(), contact.cols());
-  auto state = ratio.start();
-  test::DotStates states(contact.rows(), contact.cols());
-  (void)ratio(then, contact, states, state);
-  return ratio(now, contact, states, state);
+fingerpad::StickResult<S> stick_ratio_between(const test::PointsPx& then,
+                                              const test::PointsPx& now,
+                                              const test::ContactFlags& contact) {
+  fingerpad::StickRatio<S> stick(contact.rows(), contact.cols(), test::stick_options(2, 0.24));
+  (void)stick(then, contact);
+  return stick(now, contact);
 }
 
 inline Row plain_press() {
@@ -122,8 +118,8 @@ inline Row plain_press() {
                  }
                  const Digits50 exact = 1 / Digits50(zoom);
                  f.naive.add_absolute(published_alpha<S>(then, now), exact);
-                 f.stable.add_absolute(stick_ratio_between<S>(then, now, truth.contact).scale,
-                                       exact);
+                 f.stable.add_absolute(
+                     S(1) / stick_ratio_between<S>(then, now, truth.contact).scale, exact);
                }
                return f;
              });

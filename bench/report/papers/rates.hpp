@@ -55,12 +55,11 @@ std::string wrench_rate(W wrench) {
 template <class Ratio>
 std::string stick_rate(const Ratio& ratio) {
   const test::StickScene drag("drag");
-  test::DotStates states(21, 21);
-  auto state = ratio.start();
+  Ratio stick = ratio;
   return rate(
       [&] {
         for (fingerpad::Index step = 0; step < drag.steps(); ++step) {
-          (void)ratio(drag.dots(step), drag.contact(step), states, state);
+          (void)stick(drag.dots(step), drag.contact(step));
         }
       },
       static_cast<double>(drag.steps()));

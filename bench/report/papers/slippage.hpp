@@ -31,11 +31,10 @@ Course course_of(const Ratio& ratio,
                  std::uint64_t seed,
                  const std::string& phase = {}) {
   test::Random random(seed);
-  test::DotStates states(21, 21);
-  auto state = ratio.start();
+  Ratio stick = ratio;
   Course c;
   for (fingerpad::Index k = 0; k < scene.steps(); ++k) {
-    const auto r = ratio(noisy(scene.dots(k), jitter_px, random), scene.contact(k), states, state);
+    const auto r = stick(noisy(scene.dots(k), jitter_px, random), scene.contact(k));
     if (r.updated() && (phase.empty() || scene.phase(k) == phase)) {
       c.found.push_back(static_cast<double>(r.stick_ratio));
       c.truth.push_back(scene.stick_ratio(k));
@@ -48,17 +47,13 @@ Course course_of(const Ratio& ratio,
   return c;
 }
 
-/// The threshold for 0.06 px of noise before denoising, as in the accuracy tests.
-inline fingerpad::StickTest test_of(double reference_px) {
-  return {.reference = reference_px,
-          .store = reference_px / 4,
-          .slip = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0)),
-          .pitch = 1};
+/// delta_0 for 0.06 px of noise before denoising, as in the accuracy tests.
+inline const double slip_px = 2 * 0.416 * jitter_px * std::sqrt(std::log(100.0));
+inline fingerpad::StickRatio<> default_ratio(double reference_px) {
+  return {21, 21, test::stick_options(reference_px, slip_px)};
 }
-/// The printed method with the same thresholds.
 inline test::PublishedStick printed_ratio(double reference_px) {
-  const fingerpad::StickTest test = test_of(reference_px);
-  return {.ratio = {21, 21, {.U = test.reference, .U_min = test.store, .delta_0 = test.slip}}};
+  return {.ratio = {21, 21, {.U = reference_px, .U_min = reference_px / 4, .delta_0 = slip_px}}};
 }
 
 /// S, D and D' of the drag, averaged over 10 noises.
@@ -154,8 +149,7 @@ inline Section slippage_section() {
     section.rows.push_back({u == 0.5 ? "measures S and D over U, 58 steps" : "",
                             "U = " + number(u) + " px: S / n, D, D' (D beyond the net drop)",
                             u == 2 ? "chosen: S and D small" : "", measures(printed_ratio(u)),
-                            measures(StickRatio<>(21, 21, test_of(u))),
-                            "plate dragged to slip, 18 steps"});
+                            measures(default_ratio(u)), "plate dragged to slip, 18 steps"});
   }
   const auto add = [&](const std::string& experiment, const std::string& printed,
                        const std::string& scene, const std::string& phase,
@@ -164,8 +158,7 @@ inline Section slippage_section() {
       return Spread(ratio_errors(ratio, scene, phase)).mean_and_worst();
     };
     section.rows.push_back({experiment, "error of the ratio, mean / largest", printed,
-                            cell(printed_ratio(2)), cell(StickRatio<>(21, 21, test_of(2))),
-                            nearest});
+                            cell(printed_ratio(2)), cell(default_ratio(2)), nearest});
   };
   add("dragged to slip", "curves of Fig. 16", "drag", "drag", "plate dragged to slip");
   add("the opposite direction", "\"can still estimate\"", "drag", "back", "the same, back to slip");

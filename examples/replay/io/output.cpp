@@ -224,8 +224,8 @@ void FramesCsv::write(const FrameRow& row) {
   const auto& stick = row.stick;
   if (row.has_dots) {
     stream_ << ',' << stick.dots_in_contact() << ','
-            << cell_of(static_cast<double>(stick.stick_ratio)) << ',' << (stick.updated() ? 1 : 0)
-            << ',' << cell_of(static_cast<double>(stick.ratio_sd)) << ','
+            << cell_of(stick.stick_ratio) << ',' << (stick.updated() ? 1 : 0)
+            << ',' << cell_of(stick.ratio_sd) << ','
             << words_of(row.slip_evidence);
   } else {
     stream_ << ",,,,,";

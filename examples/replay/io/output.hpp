@@ -53,7 +53,7 @@ struct FrameRow {
   ContactResult contact;  ///< not accepted for a dots-only recording
   fingerpad::ObjectMotionResult<double> motion;
   bool has_dots = false;
-  fingerpad::StickRatioResult<float> stick;
+  fingerpad::StickResult<> stick;
   fingerpad::SlipEvidence slip_evidence = fingerpad::SlipEvidence::none;
   ForceFrame force;  ///< by look-up
   std::optional<TrueForce> truth;

@@ -91,28 +91,17 @@ DotPattern read_pattern(const Section& root) {
   return pattern;
 }
 
-fingerpad::StickTest read_stick(const Section& root) {
+fingerpad::StickOptions read_stick(const Section& root) {
   const Section section = root.section(
-      "stick",
-      {{"reference_px", "displacement over which dots are compared, px"},
-       {"store_px", "displacement after which a frame is stored, px"},
-       {"slip_px", "deviation from which a dot slips, at a displacement of reference_px, px"},
-       {"covers_pattern", "whether the object is larger than the dot pattern"}});
-  const bool covers = section.has("covers_pattern") && section.truth("covers_pattern");
-  if (!section.has("reference_px") && !section.has("store_px") && !section.has("slip_px")) {
-    return {.covers_pattern = covers};
+      "stick", {{"noise_px", "standard deviation of a dot along x and along y, px"},
+                {"covers_pattern", "whether the object is larger than the dot pattern"}});
+  fingerpad::StickOptions options;
+  options.covers_pattern = section.has("covers_pattern") && section.truth("covers_pattern");
+  if (section.has("noise_px")) {
+    options.noise = section.positive("noise_px");
+    options.free_frames = 0;  // a given noise is not measured in free frames
   }
-  fingerpad::StickTest test{.reference = 2, .store = 0.5, .slip = 0.24, .pitch = 1};
-  test.covers_pattern = covers;
-  test.free_frames = 0;  // given thresholds are not calibrated on free frames
-  const auto read = [&](const char* key, double& value) {
-    value = section.has(key) ? section.number(key) : value;
-  };
-  read("reference_px", test.reference);
-  read("store_px", test.store);
-  read("slip_px", test.slip);
-  expects_valid(test);
-  return test;
+  return options;
 }
 
 /// Whether the file has a key that only depth needs.

@@ -77,7 +77,7 @@ struct Sensor {
   std::optional<Dots> dots;
   bool dots_only = false;  ///< if true, camera, absorption, pad and dots are empty
   DotPattern pattern;      ///< only of a dots-only recording
-  fingerpad::StickTest stick;
+  fingerpad::StickOptions stick;  ///< lengths in px
   std::optional<double> contact_threshold_per_mm;  ///< empty: from the free pad
   std::optional<ForceLookUp> force;
   std::optional<Rim> rim;

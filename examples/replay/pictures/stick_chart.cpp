@@ -57,7 +57,7 @@ void paint_ratio(Canvas& canvas, const Panel& panel, const std::vector<FrameRow>
   std::vector<Spot> updated;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto& stick = rows[k].stick;
-    const double ratio = static_cast<double>(stick.stick_ratio);
+    const double ratio = stick.stick_ratio;
     if (!std::isfinite(ratio)) {
       canvas.curve(kept, 1.6, kept_ink);
       kept.clear();

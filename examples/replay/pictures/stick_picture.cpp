@@ -75,7 +75,7 @@ void paint_slip(Canvas& canvas, Spot from, Spot slip) {
 std::string words_of(const StickFrame& stick) {
   using fingerpad::SlipEvidence;
   const auto& result = stick.result;
-  const double ratio = static_cast<double>(result.stick_ratio);
+  const double ratio = result.stick_ratio;
   if (result.updated()) {
     const bool by_friction =
         stick.evidence == SlipEvidence::friction || stick.evidence == SlipEvidence::both;
@@ -105,7 +105,7 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
       }
     }
   }
-  const cv::Mat_<cv::Vec3d>& slips = scene.dots.stick.slips_mm;
+  const cv::Mat_<cv::Vec2d>& slips = scene.dots.stick.slips_mm;
   const double length = enlarged * place.shrink * px_per_mm(scene.dots);
   for (int i = 0; i < slips.rows; ++i) {
     for (int j = 0; j < slips.cols; ++j) {

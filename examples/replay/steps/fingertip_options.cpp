@@ -27,20 +27,13 @@ double threshold_of_shape(const Recording& recording) {
   return fit_contact_threshold(recording.sensor.camera, std::vector{shape_mm}).threshold_per_mm;
 }
 
-/// Converts thresholds in px from sensor.json to the noise from which they would follow. Without
-/// them the thresholds come from the noise in the free frames.
-fingerpad::SpatialStickTest stick_test_of(const Sensor& sensor) {
-  const fingerpad::StickTest& given = sensor.stick;
-  fingerpad::SpatialStickTest test;
-  test.covers_pattern = given.covers_pattern;
-  if (given.pitch > 0) {
-    // slip = 2 gain sigma sqrt(ln(1 / false_slip)); averaging over neighbours gives gain 0.416
-    const double sigmas = 2 * 0.416 * std::sqrt(std::log(1 / test.false_slip));
-    test.lateral_mm = given.slip * sensor.camera.pitch_mm / sigmas;
-    test.slip_share = (std::min)(given.slip / given.reference, 0.5);
-    test.free_frames = 0;
+/// A noise in px becomes one in mm. Without it, it is that of the free frames.
+void set_stick(const Sensor& sensor, fingerpad::StickOptions& options) {
+  options.covers_pattern = sensor.stick.covers_pattern;
+  options.free_frames = sensor.stick.free_frames;
+  if (sensor.stick.noise > 0) {
+    options.noise = sensor.stick.noise * sensor.camera.pitch_mm;
   }
-  return test;
 }
 
 void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
@@ -81,7 +74,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   (void)fingerpad::spatial_dots(sensor.camera, free_dots_px, shape_mm, dots_mm);
   options.free_dots_mm = kept(dots_mm, settings.free_dots_mm);
   options.dot_radius_px = sensor.dots ? sensor.dots->diameter_mm / 2 / sensor.camera.pitch_mm : 0.0;
-  options.stick = stick_test_of(sensor);
+  set_stick(sensor, options.stick);
   if (const auto& light = sensor.neighbour_light) {
     options.neighbour_light = {light->radius_px, static_cast<float>(light->m0_mm_per_rad),
                                static_cast<float>(light->n_per_mm)};

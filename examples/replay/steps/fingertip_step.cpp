@@ -114,20 +114,17 @@ class Step : public FingertipStep {
         dots.dots_mm(i, j) = {p.x, p.y, p.z};
         stick.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
         if (!stick.slips_mm.empty()) {
-          const auto& slip = fingertip_.dot_slips()(i, j).slip_mm;
-          stick.slips_mm(i, j) = {slip.x, slip.y, slip.z};
+          const auto& slip = fingertip_.dot_slips()(i, j);
+          stick.slips_mm(i, j) = {slip.x, slip.y};
         }
       }
     }
     const bool slides = touch.slip.status == fingerpad::FrictionLimitStatus::sliding;
-    stick.result.status = slides ? fingerpad::StickStatus::updated : touch.stick.status;
-    stick.result.stick = touch.stick.stick;
-    stick.result.slip = touch.stick.slip;
-    stick.result.unknown = touch.stick.unknown;
-    stick.result.out_of_place = touch.stick.out_of_place;
-    stick.result.stick_ratio = slides ? 0 : static_cast<float>(touch.stick.stick_ratio);
-    stick.result.reference_age = touch.stick.reference_age;
-    stick.result.ratio_sd = slides ? 0 : static_cast<float>(touch.stick.ratio_sd);
+    stick.result = touch.stick;
+    if (slides) {
+      stick.result.status = fingerpad::StickStatus::updated;
+      stick.result.stick_ratio = stick.result.ratio_sd = 0;
+    }
     stick.evidence = touch.slip.evidence;
     return dots;
   }

@@ -25,9 +25,9 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 /// Stick and slip of the dots in a frame.
 struct StickFrame {
   cv::Mat_<uchar> states;        ///< DotState of each dot; empty if the recording has no dots
-  cv::Mat_<cv::Vec3d> slips_mm;  ///< of each dot since the reference, NaN if unknown; empty if
+  cv::Mat_<cv::Vec2d> slips_mm;  ///< of each dot since the reference, NaN if unknown; empty if
                                  ///< this frame has no new result
-  fingerpad::StickRatioResult<float> result;  ///< uses friction if forces are known
+  fingerpad::StickResult<> result;  ///< uses friction if forces are known
   fingerpad::SlipEvidence evidence = fingerpad::SlipEvidence::none;
 
   DotState state(int row, int col) const { return static_cast<DotState>(states(row, col)); }

@@ -6,10 +6,9 @@
 
 namespace replay {
 
-StickStep::StickStep(cv::Size size, const fingerpad::StickTest& test) {
+StickStep::StickStep(cv::Size size, const fingerpad::StickOptions& options) {
   if (!size.empty()) {
-    ratio_.emplace(size.height, size.width, test);
-    state_.emplace(ratio_->start());
+    stick_.emplace(size.height, size.width, options);
   }
 }
 
@@ -23,10 +22,15 @@ FrameDots StickStep::operator()(const DotGrid& dots_px, double time_s) {
       frame.in_contact(i, j) = is_present(dots_px(i, j)) ? 1 : 0;
     }
   }
-  if (ratio_) {
+  if (stick_) {
     StickFrame& stick = frame.stick;
+    stick.result = (*stick_)(dots_px, frame.in_contact, time_s);
     stick.states.create(dots_px.size());
-    stick.result = (*ratio_)(dots_px, frame.in_contact, stick.states, *state_, time_s);
+    for (int i = 0; i < dots_px.rows; ++i) {
+      for (int j = 0; j < dots_px.cols; ++j) {
+        stick.states(i, j) = static_cast<uchar>(stick_->states()(i, j));
+      }
+    }
     stick.evidence =
         stick.result.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
   }

@@ -15,16 +15,14 @@ class StickStep {
  public:
   /// For a grid of `size`; with an empty size the step does nothing. Throws
   /// fingerpad::parameter_error.
-  StickStep(cv::Size size, const fingerpad::StickTest& test);
+  StickStep(cv::Size size, const fingerpad::StickOptions& options);
 
   /// Takes frames in time order. `time_s` is NaN if unknown. Each dot that is found counts as in
   /// contact.
   FrameDots operator()(const DotGrid& dots_px, double time_s);
 
  private:
-  using Ratio = fingerpad::StickRatio<>;
-  std::optional<Ratio> ratio_;
-  std::optional<Ratio::State> state_;
+  std::optional<fingerpad::StickRatio<>> stick_;
 };
 
 }  // namespace replay

@@ -54,9 +54,10 @@ template <class P> concept planar_point = detail::has_coordinates<P> && requires
   { point_traits<P>::y(p) } -> scalar;
 };
 
-/// A planar point that also has a depth z.
+/// A planar point that also has a depth z, and room for it: p[2] of a vector of two compiles too.
 template <class P> concept spatial_point = planar_point<P> && requires(const P& p) {
   { point_traits<P>::z(p) } -> scalar;
+  requires sizeof(P) >= 3 * sizeof(point_traits<P>::z(p));
 };
 
 /// A grid of points in the order in which the dots are printed.

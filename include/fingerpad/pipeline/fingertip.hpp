@@ -119,7 +119,7 @@ class Fingertip {
   }
   /// State, contact and place in mm of each printed dot in the last frame; empty without dots.
   StridedView<const DotState> dot_states() const {
-    return dots_ ? dots_->states.view() : StridedView<const DotState>();
+    return dots_ ? dots_->stick.states() : StridedView<const DotState>();
   }
   StridedView<const std::uint8_t> dots_in_contact() const {
     return dots_ ? dots_->touching.view() : StridedView<const std::uint8_t>();
@@ -127,9 +127,10 @@ class Fingertip {
   StridedView<const Point3<double>> dots_mm() const {
     return dots_ ? dots_->at_mm.view() : StridedView<const Point3<double>>();
   }
-  /// How far each dot has slipped since the reference of the last answer; NaN where not known.
-  StridedView<const DotSlip<double>> dot_slips() const {
-    return dots_ ? dots_->stick_state.slips() : StridedView<const DotSlip<double>>();
+  /// How far each dot has slipped along x and y since the reference of the last answer, in mm; NaN
+  /// where not known.
+  StridedView<const Point2<double>> dot_slips() const {
+    return dots_ ? dots_->stick.slips() : StridedView<const Point2<double>>();
   }
   /// Pull of the membrane on the rim at column `k` of rim_mm in the last frame, N/mm; NaN where it
   /// is not known.

@@ -19,7 +19,7 @@
 #include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/motion/spatial_dots.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/spatial_stick_ratio.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -42,8 +42,10 @@ struct FingertipOptions {
 
   /// Printed dots of the free pad; NaN: missing; empty: no answer from dots.
   StridedView<const Point3<double>> free_dots_mm = {};
-  double dot_radius_px = 0;     ///< a dot touches if its whole disc does; see contact_at_dots()
-  SpatialStickTest stick = {};  ///< noise of the dots in space, and what counts as slip
+  double dot_radius_px = 0;  ///< a dot touches if its whole disc does; see contact_at_dots()
+  /// Noise of the dots in mm, here of 0.06 px of 0.08 mm, and what counts as slip.
+  StickOptions stick = {.noise = 0.005};
+  double dot_depth_noise_mm = 0.025;  ///< standard deviation of a dot's depth, for the motion
   FrictionLimitOptions friction = {};
 
   /// Of the area of the flat plate that would press as hard, by which forces are looked up for
@@ -92,7 +94,7 @@ struct [[nodiscard]] FingertipResult {
   FrameStatus neighbour_light = FrameStatus::ok;  ///< of its removal
   ContactResult contact;
   ObjectMotionResult<double> motion;
-  SpatialStickResult<double> stick;  ///< from the dots
+  StickResult<double> stick;         ///< from the dots
   SlipResult<double> slip;           ///< from dots and friction; the input of GripControl
   ShiftResult<double> shift;         ///< of the dots beside the contact's edge, for the look-up
   FlatAreaResult<double> flat_area;  ///< of the plate that would press as hard

@@ -25,7 +25,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
-#include "fingerpad/slip/stick_result.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -108,14 +108,12 @@ enum class RatioUpdate : std::uint8_t {
 template <class Status>
   requires requires {
     Status::updated;
-    Status::standing;
-    Status::no_reference;
+    Status::unmoved;
     Status::no_contact;
   }
 constexpr RatioUpdate update_of(Status status) {
-  const bool unmoved = status == Status::standing || status == Status::no_reference;
   return status == Status::updated      ? RatioUpdate::fresh
-         : unmoved                      ? RatioUpdate::unmoved
+         : status == Status::unmoved    ? RatioUpdate::unmoved
          : status == Status::no_contact ? RatioUpdate::no_contact
                                         : RatioUpdate::missing;
 }

@@ -17,7 +17,7 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/slip/detail/dot_places.hpp"
+#include "fingerpad/slip/detail/dots_in_order.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -71,13 +71,17 @@ class Recoil {
   explicit Recoil(const Dots& free_px, const RecoilTest& test = {}) : test_(test) {
     expects_valid(test);
     const auto from = as_view(free_px);
-    layout_ = {from.rows(), from.cols()};
-    expects_grid_size("Recoil", layout_.rows, layout_.cols, 0);
-    detail::stick::GivenDots<Point2<S>> free(layout_);
-    free.read(from, all_touch());
-    free_ = free.found;
+    expects_grid_size("Recoil", from.rows(), from.cols(), 0);
+    free_ = {from.rows(), from.cols()};
+    free_.read(from);
+    for (Index i = 0; i < free_.rows; ++i) {
+      for (Index j = 0; j < free_.cols; ++j) {
+        cells_.push_back(free_.cell(i, j));
+      }
+    }
     using std::sqrt;
-    const S found = sqrt(detail::stick::mean_pitch_sq(free.touching, free_.data(), layout_));
+    free_pitch_sq_ = detail::mean_pitch_sq(cells_, free_.found.data(), free_.width);
+    const S found = sqrt(free_pitch_sq_);
     const double ratio = static_cast<double>(value(found)) / test.pitch_px;
     expects(
         !(ratio > 0) || (ratio > 1.0 / 3 && ratio < 3), "RecoilTest", "pitch_px", test.pitch_px,
@@ -87,20 +91,21 @@ class Recoil {
   /// A value: copy it to return to this frame later. It holds all memory that frames need.
   class State {
    public:
-    explicit State(const Recoil& recoil) : given_(recoil.layout_), before_(given_.found) {
-      lengths_.reserve(recoil.free_.size());
-    }
+    explicit State(const Recoil& recoil)
+        : given_{recoil.free_.rows, recoil.free_.cols},
+          before_(given_.found),
+          lengths_(recoil.cells_.size()) {}
     /// Returns to the state before the first frame.
     void reset() {
       result_ = {};
       largest_ = S(0);
-      std::fill(before_.begin(), before_.end(), detail::stick::no_dot<Point2<S>>());
+      std::fill(before_.begin(), before_.end(), detail::missing_point<S>());
     }
 
    private:
     friend class Recoil;
-    detail::stick::GivenDots<Point2<S>> given_;
-    std::vector<Point2<S>> before_;  // of the last frame with enough of them
+    detail::FrameOfDots<S> given_;
+    detail::Bordered<Point3<S>> before_;  // of the last frame with enough of them
     detail::ReservedVector<S> lengths_;
     S largest_ = S(0);
     RecoilResult<S> result_;
@@ -111,18 +116,19 @@ class Recoil {
   template <dot_grid Dots>
   RecoilResult<S> operator()(const Dots& dots_px, State& state) const {
     const auto dots = as_view(dots_px);
-    if (dots.rows() != layout_.rows || dots.cols() != layout_.cols ||
-        state.before_.size() != free_.size()) {
+    if (dots.rows() != free_.rows || dots.cols() != free_.cols ||
+        state.before_.size() != free_.found.size()) {
       return {};
     }
-    state.given_.read(dots, all_touch());
-    const std::vector<Point2<S>>& now = state.given_.found;
-    const bool renamed =
-        detail::stick::has_jumped(state.given_.touching, now.data(), state.before_.data(), layout_);
+    state.given_.read(dots);
+    const detail::Bordered<Point3<S>>& now = state.given_.found;
+    const bool renamed = detail::is_renumbered(cells_, now.data(), state.before_.data(),
+                                               free_.width, free_pitch_sq_);
     state.lengths_.clear();
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      const S sq = squared_norm(now[k] - free_[k]);
-      if (!renamed && detail::stick::is_distance_sq(sq)) {
+    for (const Index k : cells_) {
+      const Point3<S> moved = now[k] - free_.found[k];
+      const S sq = moved.x * moved.x + moved.y * moved.y;
+      if (!renamed && is_finite(sq)) {
         using std::sqrt;
         state.lengths_.push_back(S(sqrt(sq) / S(test_.pitch_px)));
       }
@@ -146,12 +152,9 @@ class Recoil {
   }
 
  private:
-  auto all_touch() const {
-    return LazyView(layout_.rows, layout_.cols, [](Index, Index) { return true; });
-  }
-
-  detail::stick::DotLayout layout_;
-  std::vector<Point2<S>> free_;
+  detail::FrameOfDots<S> free_ = {0, 0};
+  std::vector<Index> cells_;
+  S free_pitch_sq_ = S(0);
   RecoilTest test_;
 };
 

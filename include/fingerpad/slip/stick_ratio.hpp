@@ -1,318 +1,722 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The fraction of the contact that sticks to the object, from the dots printed in the membrane: 1
-// when nothing slips, 0 when the whole object slips. It falls before gross slip, because slip
-// starts at the edge of the contact and spreads inward. Source: Ito, Kim, Obinata, "Robust slippage
-// degree estimation based on reference update of vision-based tactile sensor", the talk with its
-// backup slides; and "Acquisition of contact force and slippage using a vision-based tactile sensor
-// with a fluid-type touchpad", eqs. 6-8. Published and corrected forms in docs/errata.md,
-// E032-E038.
+// The fraction of the contact that sticks to the object, from the dots printed in the membrane, in
+// the image or in space: 1 when nothing slips, 0 when the whole object slips. It falls before gross
+// slip, because slip starts at the edge of the contact and spreads inward. Source: Ito, Kim,
+// Obinata, "Robust slippage degree estimation based on reference update of vision-based tactile
+// sensor", the talk with its backup slides. Printed forms: published/stick_ratio.hpp.
 //
-// A dot sticks if it has moved with the object since a reference frame. The reference is a stored
-// frame from which the dots have moved far enough in one direction to decide. The steps are in
-// stick_steps.hpp. Dots cannot show an object that slides as a whole while the membrane is at rest.
+// A dot sticks if it has moved with the object since a reference frame, a stored one from which the
+// dots have moved far enough in one direction to decide. The object is a rigid motion of the dots;
+// in the image it may also appear larger or smaller. When an object rolls, tilts or presses deeper,
+// its dots move by different amounts in the image although all stick: use dots in space if depth is
+// known. Dots do not show an object that slides as a whole while the membrane is at rest;
+// friction_limit.hpp does. Measured figures are in docs/slip/stick_ratio.md.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/slip/detail/stick_state.hpp"
-#include "fingerpad/slip/stick_result.hpp"
-#include "fingerpad/slip/stick_steps.hpp"
+#include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/rigid_fit.hpp"
+#include "fingerpad/math/rotation.hpp"
+#include "fingerpad/slip/detail/dot_surface.hpp"
+#include "fingerpad/slip/detail/dots_in_order.hpp"
+#include "fingerpad/slip/detail/free_noise.hpp"
+#include "fingerpad/slip/detail/stick_doubts.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
 
-/// Thresholds of the stick ratio. Lengths are in pitches, so they hold for dots in mm, in m or in
-/// px of any camera. The given values apply until the noise of the dots has been measured in frames
-/// without contact. Then
-///   delta_0  is the distance that a sticking dot exceeds with a probability of 1 %,
-///   U        grows with delta_0, so that delta_0 / U does not grow,
-///   U_min    is the largest displacement by noise alone, exceeded with a probability of 1 %.
-/// U and U_min never fall below the given values.
-struct StickTest {
-  /// U, > 0. The reference is the newest stored frame from which a dot in contact has moved
-  /// further. Published: 2 px of about 20.
-  double reference = 0.1;
-  /// U_min (not printed), in [0, reference]. A frame is stored when a dot has moved further from
-  /// the newest stored one.
-  double store = 0.025;
-  /// delta_0, > 0. A dot slips if its residual from the object's motion is more than this times
-  /// d_max / U. For dots with other noise than the published 0.06 px of 20 see
-  /// calibrate/dot_noise.hpp.
-  double slip = 0.012;
-  /// Pitch in the unit of the dots, >= 0. 0: measured in the first frame of each contact; 1: the
-  /// lengths above are in the unit of the dots, as they are where no neighbours are in contact.
-  double pitch = 0;
-  Index min_dots = 5;  ///< needed to compare two frames, >= 1; with fewer there is no ratio
-  /// Free frames that measure the noise, >= 0; 0: the given thresholds always apply.
-  Index free_frames = 8;
+/// State of a dot.
+enum class DotState : std::uint8_t {
+  none = 0,     ///< not in contact
+  unknown = 1,  ///< in contact, but missing now or in the reference
+  slip = 2,     ///< it has not moved with the object since the reference
+  stick = 3,    ///< it has moved with the object
+};
+
+enum class StickStatus : std::uint8_t {
+  updated,  ///< the ratio is that of this frame
+  /// No stored frame is far enough away in the direction of motion or, in the image, the dots rest.
+  unmoved,
+  /// The dots move back toward their free positions by more than they move sideways. Either an
+  /// object that reverses carries them, or one that slides lets them go. The dots do not show
+  /// which; the force does (friction_limit.hpp).
+  falls_back,
+  too_few_dots,  ///< fewer than min_dots to compare, or on a line; nothing is dropped
+  /// More than a fifth of the dots in contact are not between their neighbours, or the dots are
+  /// labelled differently than before: all shifted by one place, rows and columns exchanged, two
+  /// halves exchanged. Or U is more than half a pitch, so that the noise was given in another unit.
+  /// The frame is skipped.
+  not_in_order,
+  /// Every dot that was found is in contact, up to all sides of the pattern, and more than a tenth
+  /// have not followed the object. Either they slip, or they lie outside of the contact on a gel
+  /// that is dragged along around it. The ratio is NaN. Give the true contact, or set
+  /// covers_pattern.
+  no_outline,
+  no_contact,  ///< nothing touches; after hold_s all stored frames are dropped
+  refused,     ///< a grid has another size: nothing was done
+};
+
+/// "updated", "unmoved", ...
+constexpr const char* name_of(StickStatus status) {
+  constexpr std::array<const char*, 8> names = {"updated",      "unmoved",      "falls back",
+                                                "too few dots", "not in order", "no outline",
+                                                "no contact",   "refused"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+/// Noise of the dots, and what counts as slip. Lengths are in the unit of the dots, whatever it is.
+/// All thresholds follow from the noise:
+///   delta_0 = 2 gain noise sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
+///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
+///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
+struct StickOptions {
+  /// Standard deviation of a dot along x and along y, >= 0, until it has been measured in frames
+  /// without contact. 0: a 150th of the pitch, a large one, so that U / 2 will do as long as no
+  /// stored frame is further away than U.
+  double noise = 0;
+  Index free_frames = 8;  ///< free frames that measure the noise, >= 0; 0: never measured
+  /// A dot slips if its slip exceeds this fraction of the longest displacement, in (0, 0.5].
+  double slip_share = 1.0 / 18;
+  /// Fraction of sticking dots that noise makes appear to slip, in (0, 0.5].
+  double false_slip = 0.01;
+  Index min_dots = 6;  ///< needed to compare two frames, >= 6
   /// A contact lost and found again within this time is the same one, and a clock may go back by as
-  /// much. In s, >= 0.
+  /// much; beyond that another recording has begun. In s, >= 0.
   double hold_s = 0.2;
+  Index capacity = 64;  ///< stored frames, in [1, 4096]; when full, the oldest is dropped
   /// Whether the object is known to be larger than the dot pattern. If not, a contact that contains
   /// all dots has no ratio once more than a tenth of them slip.
   bool covers_pattern = false;
 };
-inline void expects_valid(const StickTest& test) {
-  expects(is_finite(test.reference) && test.reference > 0, "StickTest", "reference", test.reference,
-          "finite and > 0");
-  expects(is_finite(test.store) && test.store >= 0 && test.store <= test.reference, "StickTest",
-          "store", test.store, "in [0, reference]");
-  expects(is_finite(test.slip) && test.slip > 0, "StickTest", "slip", test.slip, "finite and > 0");
-  expects(is_finite(test.pitch) && test.pitch >= 0, "StickTest", "pitch", test.pitch,
-          "finite and >= 0");
-  expects(is_finite(test.hold_s) && test.hold_s >= 0, "StickTest", "hold_s", test.hold_s,
-          "finite and >= 0");
-  expects(test.free_frames >= 0, "StickTest", "free_frames",
-          static_cast<long long>(test.free_frames), ">= 0");
-  expects(test.min_dots >= 1, "StickTest", "min_dots", static_cast<long long>(test.min_dots),
-          ">= 1");
+
+/// Says which value is out of range; "" if none is.
+inline std::string check(const StickOptions& o) {
+  return check("StickOptions",
+               {{"noise", o.noise, not_negative},
+                {"free_frames", o.free_frames, not_negative},
+                {"slip_share", o.slip_share, {.min = 0, .max = 0.5, .above_min = true}},
+                {"false_slip", o.false_slip, {.min = 0, .max = 0.5, .above_min = true}},
+                {"min_dots", o.min_dots, at_least(6)},
+                {"hold_s", o.hold_s, not_negative},
+                {"capacity", o.capacity, within(1, 4096)}});
 }
 
-/// Stick ratio of a pad, frame by frame.
-///   Motion     StickConsensus<>  the motion of all dots that stick together
-///   Reference  UpdatedReference  a stored frame far enough back
-///   Denoising  ResidualMean      use it for dots found by a camera
-///              NoDenoising       use it when their noise is far below `slip`
-/// Threads may share one estimator, each with its own state. A frame allocates nothing, throws
-/// nothing, and takes O(rows cols) time, plus O(dots in contact) for each stored frame that it
-/// examines; at most `capacity` frames are stored.
-template <class Motion = StickConsensus<>,
-          class Reference = UpdatedReference,
-          class Denoising = ResidualMean,
-          scalar S = float>
+/// Dots that move back toward their free positions.
+template <scalar S = double>
+struct FallingBack {
+  S stick_ratio = not_a_number<S>();  ///< if the object carries them; NaN: they do not fall back
+  Index reference_age = 0;            ///< frames since the reference
+};
+
+/// Result of a frame. If the status is neither `updated` nor `no_outline`, all from stick_ratio on
+/// is that of the last frame with an answer in this contact.
+template <scalar S = double>
+struct [[nodiscard]] StickResult {
+  StickStatus status = StickStatus::refused;
+  Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, by their state
+  Index out_of_place = 0;    ///< dots in contact that are not between their neighbours: left out
+  FallingBack<S> back = {};  ///< if the status is falls_back
+  S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
+  /// Its standard deviation by the noise of the dots near the threshold. An error of the model or
+  /// of the fitted motion is not included.
+  S ratio_sd = not_a_number<S>();
+  S furthest = S(0);        ///< d_max, the largest displacement from the reference
+  Index reference_age = 0;  ///< frames from the reference to the answer
+  /// Of the object since the reference, in the unit of the dots: a sticking dot has moved from p to
+  /// scale * rotation(p) + translation. In the image the rotation is about z.
+  Pose<S> motion = {};
+  S scale = S(1);  ///< the object appears this much larger than in the reference; in space 1
+
+  bool accepted() const { return status != StickStatus::refused; }
+  /// Whether the ratio may be used: of this frame, or still that of the last answer.
+  bool ok() const { return accepted() && is_finite(stick_ratio); }
+  bool updated() const { return status == StickStatus::updated; }
+  Index dots_in_contact() const { return stick + slip + unknown; }
+};
+
+/// Stick ratio of a pad, frame by frame. The object is the state: copy it to return to a frame
+/// later. A frame takes O(rows cols) time, plus O(dots in contact) for each of at most `capacity`
+/// stored frames that it examines. It allocates nothing and throws nothing.
+template <scalar S = double>
 class StickRatio {
-  static_assert(!scalar<Motion>,
-                "the scalar comes last: StickRatio<StickConsensus<>, UpdatedReference, "
-                "ResidualMean, double>");
+  using P = Point3<S>;
 
  public:
-  /// A value: copy it to return to this frame later. It holds all memory that frames need.
-  using State = detail::stick::StickState<S>;
-
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
-  StickRatio(Index rows,
-             Index cols,
-             const StickTest& test = {},
-             const Motion& motion = {},
-             const Reference& reference = {},
-             const Denoising& denoising = {})
-      : test_(test), motion_(motion), reference_(reference), denoising_(denoising) {
-    expects_grid_size("StickRatio", rows, cols, 1, reference.capacity);
-    expects_valid(test);
-    expects_valid(motion);
-    expects_valid(reference);
-    expects_valid(denoising);
-    layout_ = {rows, cols};
+  StickRatio(Index rows, Index cols, const StickOptions& options = {})
+      : options_((expects_grid_size("StickRatio", rows, cols, 1, options.capacity),
+                  require(options),
+                  options)),
+        frame_{rows, cols},
+        now_(frame_.found),
+        free_(frame_.found),
+        noise_of_free_(now_.size(), frame_.width),
+        doubts_(now_.size(), frame_.width),
+        touches_(now_.size(), 0),
+        states_(now_.size(), DotState::none),
+        slips_(now_.size(), no_slip()),
+        small_(now_.size()),
+        stored_(now_.size() * static_cast<std::size_t>(options.capacity)),
+        stored_at_(static_cast<std::size_t>(options.capacity)),
+        placed_(now_.size()),
+        pairs_(now_.size()),
+        sorted_(now_.size()) {}
+
+  Index rows() const { return frame_.rows; }
+  Index cols() const { return frame_.cols; }
+
+  /// Returns to the state before the first frame.
+  void reset() {
+    forget();
+    noise_of_free_.reset();
+    std::fill(free_.begin(), free_.end(), detail::missing_point<S>());
+    latest_s_ = contact_s_ = never;
   }
 
-  Index rows() const { return layout_.rows; }
-  Index cols() const { return layout_.cols; }
-
-  /// The state before any frame.
-  State start() const { return State(layout_, reference_.capacity); }
-
-  /// Processes a frame with the dots `dots_px` (NaN: not found), of which those with a true
-  /// `contact` touch the object. Writes the state of each dot to `states`.
-  template <dot_grid Dots, contact_mask Contact, class States>
-  StickRatioResult<S> operator()(const Dots& dots_px,
-                                 const Contact& contact,
-                                 States&& states,
-                                 State& state) const {
-    return (*this)(dots_px, contact, states, state, not_a_number<double>());
-  }
-
-  /// The same at a time in s. The time distinguishes a contact that flickers from a new one, and a
-  /// new recording from a clock that goes back a little.
-  template <dot_grid Dots, contact_mask Contact, class States>
-  StickRatioResult<S> operator()(const Dots& dots_px,
-                                 const Contact& contact,
-                                 States&& states,
-                                 State& state,
-                                 double time_s) const {
-    static_assert(writable_grid<States>,
-                  "this grid of states is written to: its cells must be assignable");
-    const auto dots = as_view(dots_px);
+  /// Processes a frame with the dots `dots` (NaN: not found; so are two or more at exactly 0 or
+  /// exactly -1), of which those with a true `contact` touch the object, at a time in s (NaN:
+  /// unknown). Points with a z are in space, others in the image. A recording has one kind.
+  template <dot_grid Dots, contact_mask Contact>
+  StickResult<S> operator()(const Dots& dots,
+                            const Contact& contact,
+                            double time_s = not_a_number<double>()) {
+    const auto from = as_view(dots);
     const auto touch = as_view(contact);
-    const auto to = as_view(states);
-    const bool accepted = dots.rows() == rows() && dots.cols() == cols() &&
-                          same_size(dots, touch) && same_size(dots, to) &&
-                          state.layout == layout_ &&
-                          state.repository.capacity() == reference_.capacity;
-    if (!accepted) {
+    if (from.rows() != rows() || from.cols() != cols() || !same_size(from, touch)) {
       return {};
     }
-    const bool back = state.clock.goes_back(time_s, test_.hold_s);
-    if (back) {
-      state.forget();
-      state.frame = 0;
+    if (time_s < latest_s_ - options_.hold_s) {
+      forget();
+      latest_s_ = contact_s_ = never;
     }
-    ++state.frame;
-    state.given.read(dots, touch);
-    measure_noise(state);
-    const StickStatus status = look(state);
-    StickRatioResult<S>& result = state.result;
-    result.status = back ? StickStatus::restarted : status;
-    detail::stick::settle_marks(layout_, state.given.touching, state.marks, result, to);
-    if (status == StickStatus::updated) {
-      const bool outlined =
-          test_.covers_pattern || !detail::stick::lacks_outline(result, layout_, state.given);
-      result.status = outlined ? status : StickStatus::no_outline;
-      result.stick_ratio = outlined ? S(S(static_cast<double>(result.stick)) /
-                                        S(static_cast<double>(result.stick + result.slip)))
-                                    : not_a_number<S>();
-      result.ratio_sd = outlined ? result.ratio_sd : not_a_number<S>();
+    latest_s_ = (std::max)(latest_s_, time_s);  // latest_s_ if the time is NaN
+    ++count_;
+    frame_.read(from);
+    read_contact(touch);
+    result_.out_of_place = 0;
+    result_.back = {};
+    result_.status = touching_ > 0 ? with_contact(time_s) : without_contact(time_s);
+    count_states();
+    if (result_.updated() && lacks_outline()) {
+      result_.status = StickStatus::no_outline;
+      result_.stick_ratio = result_.ratio_sd = not_a_number<S>();
     }
-    return result;
+    return result_;
+  }
+
+  /// State of each dot in the last frame.
+  StridedView<const DotState> states() const { return inside(states_); }
+  /// Slip along x and y of each dot since the reference of the last answer, averaged over
+  /// neighbours; NaN if unknown.
+  StridedView<const Point2<S>> slips() const { return inside(slips_); }
+  /// Standard deviation of a dot along x and along y, measured in free frames or as given; 0 if
+  /// neither.
+  double noise() const {
+    const bool measured =
+        options_.free_frames > 0 && noise_of_free_.frames() >= options_.free_frames;
+    return measured ? noise_of_free_.sd() : options_.noise;
   }
 
  private:
-  using Choice = detail::stick::Choice<S>;
+  static constexpr double never = -std::numeric_limits<double>::infinity();
+  static constexpr Index min_followers = 4;
 
-  /// Measures the noise in frames without contact.
-  void measure_noise(State& state) const {
-    if (!state.given.touching.empty() || test_.free_frames == 0) {
-      state.free_dots.interrupt();
-    } else if (state.given.count > 0 && !state.clock.touched_within(test_.hold_s)) {
-      state.free_dots.add(state.given.found);
-      if (state.free_dots.frames() >= test_.free_frames) {
-        state.noise_px = state.free_dots.lateral();
+  /// A dot that was found in both frames.
+  struct Pair {
+    Index k;
+    P then, now;
+    S weight;              // in the fit of the motion
+    Point2<S> slip, mean;  // of itself, and averaged over neighbours
+    S variance;            // of the mean along x and along y
+    S limit_sq;            // the dot slips if its mean is longer
+  };
+  /// A slip that counts in the mean of its neighbours; 0 if it does not.
+  struct SmallSlip {
+    Point2<S> slip = {S(0), S(0)};
+    S counts = S(0);
+  };
+  template <class T>
+  using Grid = detail::Bordered<T>;
+  template <class T>
+  StridedView<const T> inside(const Grid<T>& grid) const {
+    return {&grid[frame_.cell(0, 0)], rows(), cols(), frame_.width};
+  }
+
+  /// Drops the contact: its frames cannot be compared with those of the next one.
+  void forget() {
+    stored_count_ = 0;
+    has_center_ = false;
+    result_ = {};
+    std::fill(states_.begin(), states_.end(), DotState::none);
+    std::fill(slips_.begin(), slips_.end(), no_slip());
+  }
+
+  template <class View>
+  void read_contact(const View& contact) {
+    touching_ = 0;
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
+        touches_[k] = is_contact(cell_t<View>(contact(i, j))) ? 1 : 0;
+        touching_ += touches_[k];
       }
     }
   }
 
-  /// Noise in the free frames. It is at least a 2000th of a pitch, because no camera finds dots
-  /// better and some files repeat them.
-  static double noise_of(const State& state) {
-    return (std::max)(state.noise_px, std::sqrt(static_cast<double>(value(state.pitch_sq))) / 2000);
-  }
-
-  /// The thresholds for the measured noise; those given if it is not known.
-  detail::stick::StickLengths lengths_of(const State& state) const {
-    using detail::stick::noise_left_by;
-    const double pitch_px = std::sqrt(static_cast<double>(value(state.pitch_sq)));
-    const double unit = test_.pitch > 0 ? test_.pitch : pitch_px > 0 ? pitch_px : 1;
-    const detail::stick::StickLengths given = {unit * test_.reference, unit * test_.store,
-                                               unit * test_.slip};
-    const double left = noise_left_by(denoising_);
-    if (!(state.noise_px > 0) || !(left > 0)) {
-      return given;
+  StickStatus without_contact(double time_s) {
+    if (frame_.count == 0) {
+      return StickStatus::too_few_dots;
     }
-    const double noise_px = noise_of(state);
-    const double dots = static_cast<double>(state.given.touching.size());
-    detail::stick::StickLengths px;
-    px.slip = 2 * left * noise_px * std::sqrt(std::log(100.0));
-    px.reference = given.reference * (std::max)(1.0, px.slip / given.slip);
-    px.store = (std::min)((std::max)(given.store, 2 * noise_px * std::sqrt(std::log(100 * dots))),
-                          px.reference);
-    return px;
-  }
-
-  /// Status of this frame. Fills all of the result but the counts.
-  StickStatus look(State& state) const {
-    using namespace detail::stick;
-    StickRatioResult<S>& result = state.result;
-    const auto& touching = state.given.touching;
-    result.out_of_place = 0;
-    if (touching.empty()) {
-      return without_contact(state);
-    }
-    state.clock.touch();
-    const PlacedDots placed = place_dots(state.given, layout_, state.now);
-    denoise_positions(denoising_, state.given, layout_, state.now);
-    result.out_of_place = placed.out_of_place;
-    if (is_not_in_order(placed)) {
-      return StickStatus::not_in_order;
-    }
-    if (placed.dots < test_.min_dots) {
-      return state.given.count > 0 ? StickStatus::too_few_dots : StickStatus::no_dots;
-    }
-    const S pitch_sq = mean_pitch_sq(touching, state.now.data(), layout_);
-    if (state.repository.size() == 0) {
-      state.pitch_sq = pitch_sq;
-    }
-    const StickLengths px = lengths_of(state);
-    if (is_wrong_scale(pitch_sq, px.reference, px.slip) || is_rescaled(pitch_sq, state.pitch_sq)) {
-      state.repository.clear();  // frames in another unit are not comparable
-      return StickStatus::wrong_scale;
-    }
-    const S reference_sq = S(square(px.reference));
-    const Choice choice = choose_reference(reference_, touching, state.now.data(), state.repository,
-                                           reference_sq, S(square(px.store)));
-    result.furthest_px = length(choice.furthest_sq);
-    if (choice.standing && choice.age < 0) {
-      return StickStatus::standing;
-    }
-    const bool leap = S(4) * reference_sq < choice.newest_sq;
-    if (leap && has_jumped(touching, state.now.data(), state.repository.dots(0), layout_)) {
-      return StickStatus::jumped;
-    }
-    const StickStatus status =
-        choice.age < 0 ? StickStatus::no_reference : answer(choice, px, state);
-    if (!choice.standing && is_stored(reference_, state.repository)) {
-      state.repository.store(state.now, state.frame);
-    }
-    return status;
-  }
-
-  StickStatus without_contact(State& state) const {
-    if (state.given.count == 0) {
-      return StickStatus::no_dots;
-    }
-    if (!state.clock.touched_within(test_.hold_s)) {
-      state.forget();
-      state.free = state.given.found;
+    if (!(time_s - contact_s_ <= options_.hold_s)) {
+      forget();
+      std::copy(frame_.found.begin(), frame_.found.end(), free_.begin());
+      noise_of_free_.add(free_);
     }
     return StickStatus::no_contact;
   }
 
-  /// Compares the frame with the chosen reference.
-  StickStatus answer(const Choice& choice,
-                     const detail::stick::StickLengths& px,
-                     State& state) const {
-    using namespace detail::stick;
-    const FramePair<S> pair{state.now.data(), state.repository.dots(choice.age),
-                            state.given.touching, layout_, choice.furthest_sq};
-    if (count_pairs(pair) < test_.min_dots) {
+  /// Status of this frame. Fills all of the result but the counts.
+  StickStatus with_contact(double time_s) {
+    noise_of_free_.interrupt();
+    contact_s_ = is_finite(time_s) ? time_s : contact_s_;
+    const Index crossed = place();
+    if (5 * crossed > detail::size_of(placed_) + result_.out_of_place) {
+      return StickStatus::not_in_order;
+    }
+    if (detail::size_of(placed_) < options_.min_dots) {
       return StickStatus::too_few_dots;
     }
-    if (falls_back(pair.touching, pair.now, pair.then, state.free)) {
+    if (!frame_.in_image) {
+      smooth_depths();
+    }
+    pitch_sq_ = detail::mean_pitch_sq(placed_, now_.data(), frame_.width);
+    const S pitch = sqrt_of(pitch_sq_), known = S(noise());
+    // no camera finds dots better than a 2000th of a pitch
+    sd_ = value(known) > 0 ? (std::max)(known, S(pitch / S(2000))) : S(pitch / S(150));
+    const S reference =
+        sd_ * S(2 * gain() * std::sqrt(std::log(1 / options_.false_slip)) / options_.slip_share);
+    return 2 * value(reference) > value(pitch) && value(pitch) > 0 ? StickStatus::not_in_order
+                                                                   : compare(reference * reference);
+  }
+
+  /// Searches the reference, answers by it, and stores the frame. The search goes back from the
+  /// newest frame as long as the distance grows. Where it begins to shrink, the object has
+  /// reversed, and older frames are not examined. As long as the noise is not known, the newest
+  /// frame further than U / 2 will do if none is further than U: the limit of U is large for it.
+  StickStatus compare(const S& reference_sq) {
+    StickStatus status = StickStatus::unmoved;
+    Index reference = -1;
+    S before = S(-1);
+    bool rests = false;
+    furthest_sq_ = S(-1);
+    for (Index age = 0; age < stored_count_ && value(before) <= value(reference_sq); ++age) {
+      const Index slot = (newest_ + options_.capacity - age) % options_.capacity;
+      const P* const then = stored_.data() + slot * detail::size_of(now_);
+      S sq = S(-1);  // d_max^2
+      for (const Index k : placed_) {
+        const S moved_sq = squared_norm(now_[k] - then[k]);
+        sq = value(moved_sq) > value(sq) ? moved_sq : sq;
+      }
+      if (age == 0 && value(sq) > 4 * value(reference_sq) &&
+          detail::is_renumbered(placed_, now_.data(), then, frame_.width, pitch_sq_)) {
+        return StickStatus::not_in_order;
+      }
+      rests = rests || (age == 0 && value(sq) >= 0 && 16 * value(sq) <= value(reference_sq));
+      // At rest the image is not compared again: a membrane that creeps under a sliding object
+      // would seem to stick more and more. In space, forces tell of the slide.
+      if (value(sq) < value(before) || (rests && frame_.in_image)) {
+        break;
+      }
+      before = sq;
+      const bool beyond = value(sq) > value(reference_sq);
+      const bool near = !(noise() > 0) && 4 * value(sq) > value(reference_sq);
+      if (beyond || (reference < 0 && near)) {
+        reference = slot;
+        furthest_sq_ = sq;
+      }
+    }
+    if (reference >= 0) {
+      const S limit_share = S(square(options_.slip_share));
+      limit_sq_ = limit_share * (std::max)(furthest_sq_, reference_sq);
+      status = answer(stored_.data() + reference * detail::size_of(now_),
+                      static_cast<Index>(count_ - stored_at_[reference]));
+    }
+    if (!rests) {
+      newest_ = (newest_ + 1) % options_.capacity;
+      stored_count_ = (std::min)(stored_count_ + 1, options_.capacity);
+      stored_at_[newest_] = count_;
+      std::copy(now_.begin(), now_.end(), stored_.begin() + newest_ * detail::size_of(now_));
+    }
+    return status;
+  }
+
+  /// Keeps in `now` the dots in contact that lie between their neighbours. Returns how many do so
+  /// neither in their row nor in their column, which a single wrong neighbour does not cause.
+  Index place() {
+    std::fill(now_.begin(), now_.end(), detail::missing_point<S>());
+    placed_.clear();
+    Index crossed = 0;
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
+        if (touches_[k] != 0 && is_finite(frame_.found[k])) {
+          const bool row = frame_.is_out_of_line(k, j, cols(), 1);
+          const bool col = frame_.is_out_of_line(k, i, rows(), frame_.width);
+          crossed += row && col ? 1 : 0;
+          if (row || col) {
+            ++result_.out_of_place;
+          } else {
+            placed_.push_back(k);
+            now_[k] = frame_.found[k];
+          }
+        }
+      }
+    }
+    return crossed;
+  }
+
+  /// Depth is several times as noisy as x and y: it is taken from the quadric through all dots.
+  void smooth_depths() {
+    const auto surface = detail::stick::quadric_through<S>([&](const auto& visit) {
+      for (const Index k : placed_) {
+        visit(now_[k]);
+      }
+    });
+    for (const Index k : placed_) {
+      now_[k].z = surface.height(now_[k]);
+    }
+  }
+
+  void collect(const P* then) {
+    pairs_.clear();
+    for (const Index k : placed_) {
+      if (is_finite(then[k])) {
+        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, S(0), S(0)});
+      }
+    }
+  }
+
+  /// Compares the frame with its reference.
+  StickStatus answer(const P* then, Index age) {
+    collect(then);
+    if (detail::size_of(pairs_) < options_.min_dots || !find_object()) {
+      return StickStatus::too_few_dots;
+    }
+    const auto sticks = [&](const Pair& p) {
+      return value(squared_norm(p.mean)) < value(p.limit_sq);
+    };
+    const Index stick = std::count_if(pairs_.begin(), pairs_.end(), sticks);
+    const S ratio = detail::number<S>(stick) / detail::number<S>(detail::size_of(pairs_));
+    if (falls_back()) {
+      result_.back = {ratio, age};
       return StickStatus::falls_back;
     }
-    const Index reference = first_dot(pair, state);
-    const S slip = S(px.slip / px.reference);
-    const S slip_sq = slip * slip * choice.furthest_sq;
-    const bool mostly_slipped = state.result.stick < state.result.slip;
-    const Similarity<S> map = motion_between(motion_, pair, reference, slip_sq, mostly_slipped);
-    const double left = noise_left_by(denoising_);
-    // of a residual of two frames, for which delta_0 is exceeded with a probability of 1 %
-    const double sd_px = px.slip / std::sqrt(2 * std::log(100.0));
-    const S variance = mark_dots(denoising_, pair, map, slip_sq, S(sd_px), state.room, state.marks);
-    state.stick_center = centroid(pair, state.marks, DotState::stick);
-    StickRatioResult<S>& result = state.result;
-    result.reference_age = static_cast<Index>(state.frame - state.repository.frame(choice.age));
-    result.angle_rad = map.angle_rad();
-    result.scale = map.scale();
-    result.reference_dot = layout_.dot_at(reference);
-    const S known = S(static_cast<double>(count_pairs(pair)));
-    result.ratio_sd = left > 0 ? ratio_sd_of(variance, known) : not_a_number<S>();
+    std::fill(states_.begin(), states_.end(), DotState::unknown);
+    std::fill(slips_.begin(), slips_.end(), no_slip());
+    P center = {S(0), S(0), S(0)};
+    for (const Pair& p : pairs_) {
+      states_[p.k] = sticks(p) ? DotState::stick : DotState::slip;
+      slips_[p.k] = p.mean;
+      center = sticks(p) ? center + p.now : center;
+    }
+    has_center_ = has_center_ || stick > 0;
+    center_ = stick > 0 ? center / detail::number<S>(stick) : center_;
+    result_.stick_ratio = ratio;
+    result_.ratio_sd = doubts_(pairs_, sd_, frame_.in_image);
+    result_.furthest = sqrt_of(furthest_sq_);
+    result_.reference_age = age;
+    result_.motion = motion_;
+    result_.scale = scale_;
     return StickStatus::updated;
   }
 
-  static S length(const S& sq) {
-    using std::sqrt;
-    return S(0) < sq ? S(sqrt(sq)) : S(0);
+  /// Finds the motion of the object from the dots around the last ones that stuck. No dot that the
+  /// object drags can outrun it: if one has, the dots found so far only stand still together, and
+  /// the search starts again there. If these stand still too and most dots slipped in the last
+  /// answer, the object has moved on with the furthest dot. Weights by the averaged slip then
+  /// reduce the influence of dots that slip a little. False if the dots do not determine a motion.
+  bool find_object() {
+    const P from = has_center_ ? center_ : mean_of([](const Pair& p) { return p.now; });
+    std::fill(small_.begin(), small_.end(), SmallSlip{});
+    bool found = follow(from);
+    const Pair* const ahead = found ? outrunner() : nullptr;
+    if (ahead != nullptr) {
+      found = follow(ahead->now);
+      if (has_hardly_moved()) {
+        if (result_.stick < result_.slip) {
+          motion_ = {};
+          motion_.translation_mm = ahead->now - ahead->then;
+          scale_ = S(1);
+          set_slips();
+          average();
+          return true;
+        }
+        found = follow(from);
+      }
+    }
+    // noise gives averaged slips a mean square of 4 gain^2; at twice that the weight is 1/4
+    const S quarter_sq = S(8 * gain() * gain()) * sd_ * sd_;
+    for (int pass = 0; pass < 3; ++pass) {
+      average();
+      for (Pair& p : pairs_) {
+        p.weight = square(quarter_sq / (quarter_sq + squared_norm(p.mean)));
+      }
+      found = found && fit();
+    }
+    average();
+    return found;
+  }
+  /// Fits the motion to the dots around a place, then to those that follow it within the limit,
+  /// until their number no longer changes.
+  bool follow(const P& from) {
+    using std::exp;
+    const S wide_sq = value(pitch_sq_) > 0 ? S(1.4) * pitch_sq_ : S(1e12);
+    for (Pair& p : pairs_) {
+      p.weight = exp(-squared_norm(p.now - from) / wide_sq);
+    }
+    bool found = fit();
+    for (Index pass = 0, before = -1, followers = 0; pass < 6 && followers != before; ++pass) {
+      before = pass > 0 ? followers : -1;
+      followers = 0;
+      for (Pair& p : pairs_) {
+        // a slip has more noise than its mean over neighbours
+        const bool follows = value(squared_norm(p.slip)) < 2 * value(limit_sq_);
+        p.weight = S(follows ? 1 : 0);
+        followers += follows ? 1 : 0;
+      }
+      if (followers < min_followers) {
+        weigh_nearest();
+      }
+      found = found && fit();
+    }
+    return found;
+  }
+  /// The mean of a place of the dots over the weights of the fit.
+  template <class Place>
+  P mean_of(const Place& place) const {
+    P sum = {S(0), S(0), S(0)};
+    S weight = S(0);
+    for (const Pair& p : pairs_) {
+      sum += p.weight * place(p);
+      weight = weight + p.weight;
+    }
+    return sum / weight;
+  }
+  /// Whether the dots of the fit have moved by less than half of d_max.
+  bool has_hardly_moved() const {
+    const P moved = mean_of([](const Pair& p) { return p.now - p.then; });
+    return 4 * value(squared_norm(moved)) < value(furthest_sq_);
+  }
+  /// If the dots of the fit have hardly moved, the dot that is ahead of them by more than half of
+  /// its displacement and has moved furthest, more than half of d_max; nullptr: there is none. The
+  /// scale must not explain more than a quarter of the displacement.
+  const Pair* outrunner() const {
+    const Pair* ahead = nullptr;
+    S ahead_sq = furthest_sq_ / S(4);
+    const P center = mean_of([](const Pair& p) { return p.now; });
+    for (const Pair& p : pairs_) {
+      const Point2<S> moved = {p.now.x - p.then.x, p.now.y - p.then.y};
+      const S sq = squared_norm(moved), grown = (scale_ - S(1)) / scale_;
+      if (value(sq) > value(ahead_sq) && 2 * value(dot(p.slip, moved)) > value(sq) &&
+          16 * value(grown * grown * squared_norm(p.now - center)) <= value(sq)) {
+        ahead = &p;
+        ahead_sq = sq;
+      }
+    }
+    return has_hardly_moved() ? ahead : nullptr;
   }
 
-  StickTest test_;
-  Motion motion_;
-  Reference reference_;
-  Denoising denoising_;
-  detail::stick::DotLayout layout_;
+  /// Fits the motion to the weighted pairs and sets their slips. False: not determined.
+  bool fit() {
+    bool determined = true;
+    if (frame_.in_image) {
+      determined = fit_similar();
+    } else {
+      const auto at = [&](Index k) -> const Pair& { return pairs_.data()[k]; };
+      const auto rigid = fit_rigid<S>(
+          detail::size_of(pairs_), [&](Index k) { return at(k).then; },
+          [&](Index k) { return at(k).now; }, [&](Index k) { return at(k).weight; });
+      determined = rigid.has_value();
+      motion_ = rigid.value_or(motion_);
+      scale_ = S(1);
+    }
+    set_slips();
+    return determined;
+  }
+  void set_slips() {
+    for (Pair& p : pairs_) {
+      const P slip = p.now - scale_ * motion_.rotation(p.then) - motion_.translation_mm;
+      p.slip = {slip.x, slip.y};
+    }
+  }
+  /// Rotation about z, scale and shift of least squares.
+  bool fit_similar() {
+    S mass = S(0), along = S(0), across = S(0), spread = S(0);
+    P then = {S(0), S(0), S(0)}, now = then;
+    for (const Pair& p : pairs_) {
+      mass = mass + p.weight;
+      then += p.weight * p.then;
+      now += p.weight * p.now;
+    }
+    then = then / mass;
+    now = now / mass;
+    for (const Pair& p : pairs_) {
+      const P t = p.then - then, n = p.now - now;
+      along = along + p.weight * dot(t, n);
+      across = across + p.weight * cross(t, n).z;
+      spread = spread + p.weight * dot(t, t);
+    }
+    const S size = sqrt_of(along * along + across * across);
+    const bool determined = value(size) > 0 && value(spread) > 0;
+    scale_ = determined ? size / spread : S(1);
+    const S c = determined ? along / size : S(1), s = determined ? across / size : S(0);
+    motion_.rotation = {{{c, -s, S(0)}, {s, c, S(0)}, {S(0), S(0), S(1)}}};
+    motion_.translation_mm = now - scale_ * motion_.rotation(then);
+    return determined;
+  }
+
+  /// Gaussian weights whose standard deviation is the slip of the dot that is min_followers-th.
+  void weigh_nearest() {
+    using std::exp;
+    sorted_.clear();
+    for (const Pair& p : pairs_) {
+      sorted_.push_back(squared_norm(p.slip));
+    }
+    const auto middle = sorted_.begin() + min_followers;
+    std::nth_element(sorted_.begin(), middle, sorted_.end());
+    const S wsq = value(*middle) > 0 ? *middle : S(1);
+    for (Pair& p : pairs_) {
+      p.weight = exp(-squared_norm(p.slip) / (S(2) * wsq));
+    }
+  }
+
+  /// Averages slips over 3 x 3 neighbours with the weights 6, 2, 1. Slips beyond the gate do not
+  /// count, so that they do not affect the sticking dots beside them, and stay as they are.
+  void average() {
+    const S gate_sq = S(36) * limit_sq_;
+    const double chance = 2 * std::log(1 / options_.false_slip);
+    const Index w = frame_.width;
+    for (const Pair& p : pairs_) {
+      const bool counts = value(squared_norm(p.slip)) < value(gate_sq);
+      small_[p.k] = counts ? SmallSlip{p.slip, S(1)} : SmallSlip{};
+    }
+    for (Pair& p : pairs_) {
+      const SmallSlip* const s = &small_[p.k];
+      Point2<S> sum = {S(0), S(0)};
+      S weights = S(0), squares = S(0);
+      const auto add = [&](const S& weight, const SmallSlip& of) {
+        sum += weight * of.slip;
+        weights = weights + weight * of.counts;
+        squares = squares + weight * weight * of.counts;
+      };
+      add(S(6), s[0]);
+      for (const Index beside : {Index(-1), Index(1), -w, w}) {
+        add(S(2), s[beside]);
+      }
+      for (const Index across : {-w - 1, 1 - w, w - 1, w + 1}) {
+        add(S(1), s[across]);
+      }
+      const bool counts = value(s->counts) > 0;
+      p.mean = counts ? sum / weights : p.slip;
+      p.variance = S(2) * sd_ * sd_ * (counts ? squares / (weights * weights) : S(1));
+      // a mean over few neighbours, beside missing dots, has more noise. In space the limit stays,
+      // as dots that leave a rolling object at the edge slip by little
+      p.limit_sq = frame_.in_image ? (std::max)(limit_sq_, S(chance) * p.variance) : limit_sq_;
+    }
+  }
+  /// Share of the noise of one dot that remains in its mean with eight neighbours.
+  static double gain() { return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18; }
+
+  /// Whether the dots have moved back toward their free positions, to within 45 degrees; false if
+  /// these are not known. Only x and y count, because the depth of a contact depends on its load.
+  bool falls_back() const {
+    S then = S(0), now = S(0), moved = S(0);
+    const auto apart_sq = [](const P& a, const P& b) {
+      return square(S(a.x - b.x)) + square(S(a.y - b.y));
+    };
+    for (const Pair& p : pairs_) {
+      if (is_finite(free_[p.k])) {
+        then = then + apart_sq(p.then, free_[p.k]);
+        now = now + apart_sq(p.now, free_[p.k]);
+        moved = moved + apart_sq(p.now, p.then);
+      }
+    }
+    const S nearer = sqrt_of(then) - sqrt_of(now);
+    return value(nearer) > 0 && value(moved) < value(S(2) * nearer * nearer);
+  }
+
+  void count_states() {
+    std::array<Index, 4> count = {};
+    for (Index k = 0; k < detail::size_of(now_); ++k) {
+      states_[k] = touches_[k] == 0 ? DotState::none : (std::max)(states_[k], DotState::unknown);
+      ++count[static_cast<std::size_t>(states_[k])];
+    }
+    result_.unknown = count[1];
+    result_.slip = count[2];
+    result_.stick = count[3];
+  }
+
+  /// Whether slipping dots cannot be distinguished from dots outside of the contact: the contact
+  /// reaches all four sides of the pattern and no dot was found outside of it, and more than a
+  /// tenth slip, where noise alone causes a hundredth.
+  bool lacks_outline() const {
+    bool all_touch = true, top = false, bottom = false, left = false, right = false;
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
+        if (is_finite(frame_.found[k])) {
+          all_touch = all_touch && touches_[k] != 0;
+          top = top || i == 0;
+          bottom = bottom || i == rows() - 1;
+          left = left || j == 0;
+          right = right || j == cols() - 1;
+        }
+      }
+    }
+    return !options_.covers_pattern && 10 * result_.slip > result_.stick + result_.slip &&
+           all_touch && top && bottom && left && right;
+  }
+
+  static Point2<S> no_slip() { return {not_a_number<S>(), not_a_number<S>()}; }
+  static S sqrt_of(const S& sq) {
+    using std::sqrt;
+    return value(sq) > 0 ? S(sqrt(sq)) : S(0);
+  }
+
+  StickOptions options_;
+  detail::FrameOfDots<S> frame_;
+  Grid<P> now_;   // of it, the dots in contact and in place
+  Grid<P> free_;  // their positions without contact
+  detail::FreeNoise<S> noise_of_free_;
+  detail::StickDoubts<S> doubts_;
+  Grid<std::uint8_t> touches_;
+  Grid<DotState> states_;
+  Grid<Point2<S>> slips_;
+  Grid<SmallSlip> small_;
+  std::vector<P> stored_;  // a ring of `capacity` frames
+  Grid<std::int64_t> stored_at_;
+  detail::ReservedVector<Index> placed_;
+  detail::ReservedVector<Pair> pairs_;
+  detail::ReservedVector<S> sorted_;
+  Index touching_ = 0, newest_ = 0, stored_count_ = 0;
+  std::int64_t count_ = 0;  // of frames
+  bool has_center_ = false;
+  P center_ = {S(0), S(0), S(0)};  // of the dots that stuck in the last answer
+  S pitch_sq_ = S(0), sd_ = S(0);
+  S furthest_sq_ = S(0), limit_sq_ = S(0);  // d_max and the limit of this frame
+  Pose<S> motion_ = {};                     // of the object since the reference
+  S scale_ = S(1);
+  double latest_s_ = never, contact_s_ = never;
+  StickResult<S> result_;
 };
 
 }  // namespace v0

@@ -20,31 +20,30 @@ struct FingertipDots {
   OwnedGrid<Point2<double>> seen;  // in px of the samples
   OwnedGrid<Point3<double>> at_mm;
   OwnedGrid<std::uint8_t> touching;
-  OwnedGrid<DotState> states;
   double radius_px;  // of the samples
+  double depth_noise_mm;
   ContactShift<> shift;
   ObjectMotion<> motion;
-  SpatialStickRatio<> stick;
-  SpatialStickRatio<>::State stick_state;
+  StickRatio<> stick;
   FrictionLimit<> friction;
 
   explicit FingertipDots(const FingertipOptions& o)
       : seen(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         at_mm(seen.rows, seen.cols),
         touching(seen.rows, seen.cols),
-        states(seen.rows, seen.cols),
         radius_px(o.dot_radius_px / o.sampling),
+        depth_noise_mm(o.dot_depth_noise_mm),
         shift(o.free_dots_mm),
         motion(seen.rows, seen.cols),
         stick(seen.rows, seen.cols, o.stick),
-        stick_state(stick.start()),
         friction(o.friction) {
-    require("FingertipOptions", {{"dot_radius_px", o.dot_radius_px, within(0, 1000)}});
+    require("FingertipOptions", {{"dot_radius_px", o.dot_radius_px, within(0, 1000)},
+                                 {"dot_depth_noise_mm", depth_noise_mm, not_negative}});
   }
 
   void reset() {
     motion = ObjectMotion<>(seen.rows, seen.cols);
-    stick_state.reset();
+    stick.reset();
     friction.reset();
   }
 
@@ -68,7 +67,7 @@ struct FingertipDots {
               FingertipResult& touch) {
     (void)spatial_dots(camera, seen.view(), depth_mm, at_mm.view());
     contact_at_dots(seen.view(), mask, touching.view(), radius_px);
-    touch.stick = stick(at_mm.view(), touching.view(), states.view(), stick_state, time_s);
+    touch.stick = stick(at_mm.view(), touching.view(), time_s);
     if (touch.contact.ok()) {
       touch.shift = shift(at_mm.view(), touching.view());
     }
@@ -78,9 +77,9 @@ struct FingertipDots {
   /// dots that stick.
   void conclude(FingertipResult& touch) {
     touch.slip = friction(load_of(touch), touch.stick);
-    const LazyView slips(states.rows, states.cols,
-                         [&](Index i, Index j) { return !touch.slip.holds(states.view()(i, j)); });
-    touch.motion = motion(at_mm.view(), touching.view(), slips, stick_state.noise.depth_mm);
+    const LazyView slips(seen.rows, seen.cols,
+                         [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
+    touch.motion = motion(at_mm.view(), touching.view(), slips, depth_noise_mm);
   }
 
   /// The load from the six-axis force, else from the look-up; unknown without both.

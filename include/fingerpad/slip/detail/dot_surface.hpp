@@ -26,6 +26,10 @@ struct Quadric {
   static std::array<S, 6> terms(const S& x, const S& y) {
     return {S(1), x, y, S(x * x), S(x * y), S(y * y)};
   }
+  S height(const Point3<S>& p) const {
+    const auto t = terms(S(p.x - middle.x), S(p.y - middle.y));
+    return middle.z + c[0] + c[1] * t[1] + c[2] * t[2] + c[3] * t[3] + c[4] * t[4] + c[5] * t[5];
+  }
   /// dz/dx and dz/dy.
   Point2<S> slope(const Point3<S>& p) const {
     const S x = p.x - middle.x, y = p.y - middle.y;
