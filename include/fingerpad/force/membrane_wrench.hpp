@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,7 +36,7 @@ struct Mark {
   double arc_mm = 0;       ///< stress-free arc from the rim
   double azimuth_rad = 0;  ///< from x to y
   Point2<double> px = {0, 0};
-  double sd_px = 0.05;  ///< of each coordinate, > 0
+  double sd_px = 0.06;  ///< of each coordinate, > 0; the covariance follows the residuals
 };
 
 struct MembraneWrenchOptions {
@@ -67,7 +68,7 @@ enum class MembraneWrenchStatus {
   no_pressure,    ///< missing, or so low or high that no free pad has it
   too_few_marks,  ///< fewer than 20
   not_solved,     ///< the fit does not settle
-  poor_fit,       ///< residuals are twice what they should be: wrong places, labels or rubber
+  poor_fit,       ///< residuals are over twice sd_px: wrong places, labels or pad
 };
 constexpr const char* name_of(MembraneWrenchStatus status) {
   constexpr const char* names[] = {"ok", "no pressure", "too few marks", "not solved", "poor fit"};
@@ -79,8 +80,8 @@ struct MembraneWrenchResult {
   MembraneWrenchStatus status = MembraneWrenchStatus::too_few_marks;
   Point3<double> force_n, moment_n_mm;
   Eigen::Matrix<double, 6, 6> covariance;  ///< of force and moment, N and N mm
-  double misfit = 0;  ///< rms residual over its sd, without outliers; 1 is right
-  Index marks = 0;    ///< used
+  double misfit = 0;                       ///< rms residual over sd_px, without outliers
+  Index marks = 0;                         ///< used
   bool ok() const { return status == MembraneWrenchStatus::ok; }
 };
 
@@ -135,6 +136,12 @@ class MembraneWrench {
     centre_.back() = load;
     parameters_ = centre_;
     annulus_.march(centre_, false);
+    for (std::size_t k = 0; k < free_radius_mm_.size(); ++k) {
+      const double arc =
+          reach_mm() * static_cast<double>(k) / static_cast<double>(free_radius_mm_.size() - 1);
+      const auto seen = on_plate(pixel_of(camera_, annulus_.at(annulus_.place(arc, 0))));
+      free_radius_mm_[k] = std::hypot(seen.x, seen.y);
+    }
     return true;
   }
 
@@ -145,23 +152,18 @@ class MembraneWrench {
     if (!begun_ || !is_plausible(px)) {
       return {};
     }
-    const auto seen = point_at(camera_, px.y, px.x, 0.0);
-    const double azimuth = std::atan2(seen.y, seen.x), radius = std::hypot(seen.x, seen.y);
-    const auto radius_at = [&](double arc) {
-      const auto at = annulus_.at(annulus_.place(arc, azimuth));
-      const auto pixel = pixel_of(camera_, at);
-      const auto plate = point_at(camera_, pixel.y, pixel.x, 0.0);
-      return std::hypot(plate.x, plate.y);
-    };
-    double rim = 0, inner = reach_mm();
-    if (!(radius < radius_at(rim)) || !(radius > radius_at(inner))) {
+    const auto seen = on_plate(px);
+    const double radius = std::hypot(seen.x, seen.y);
+    // an undercut wall is seen from its widest circle inward
+    const auto widest = std::max_element(free_radius_mm_.begin(), free_radius_mm_.end());
+    const auto inner = std::lower_bound(widest, free_radius_mm_.end(), radius, std::greater<>());
+    if (inner == widest || inner == free_radius_mm_.end()) {
       return {};
     }
-    for (int k = 0; k < 40; ++k) {
-      const double middle = (rim + inner) / 2;
-      (radius_at(middle) > radius ? rim : inner) = middle;
-    }
-    return Mark{rim, azimuth, px};
+    const double share = (*(inner - 1) - radius) / (*(inner - 1) - *inner);
+    const double arc = (static_cast<double>(inner - free_radius_mm_.begin()) - 1 + share) *
+                       reach_mm() / static_cast<double>(free_radius_mm_.size() - 1);
+    return Mark{arc, std::atan2(seen.y, seen.x), px};
   }
 
   /// Force and moment from the marks of a frame, which nothing touches. O(marks x parameters^2);
@@ -195,7 +197,7 @@ class MembraneWrench {
     }
     result.misfit = misfit_;
     read_load(result);
-    result.status = misfit_ > 2 ? MembraneWrenchStatus::poor_fit : MembraneWrenchStatus::ok;
+    result.status = misfit_ > 2.5 ? MembraneWrenchStatus::poor_fit : MembraneWrenchStatus::ok;
     return result;
   }
 
@@ -213,6 +215,10 @@ class MembraneWrench {
     result.force_n = result.moment_n_mm = {nan, nan, nan};
     result.covariance.setConstant(nan);
     return result;
+  }
+
+  Point3<double> on_plate(const Point2<double>& px) const {
+    return point_at(camera_, px.y, px.x, 0.0);
   }
 
   /// Gauss and Newton's method with Huber's weights. The slopes are renewed while steps are large.
@@ -319,7 +325,7 @@ class MembraneWrench {
       auto column = transposed_.col(k);
       solver_.matrixL().solveInPlace(column);
     }
-    const double spread = square(modulus * (std::max)(1.0, misfit_));
+    const double spread = square(modulus * misfit_);
     result.covariance = transposed_.transpose().lazyProduct(transposed_);
     result.covariance *= spread;
     const Eigen::Matrix<double, 6, 1> all(result.force_n.x, result.force_n.y, result.force_n.z,
@@ -334,6 +340,7 @@ class MembraneWrench {
   Annulus<double> annulus_;
   bool begun_ = false;
   std::vector<double> parameters_, centre_, weight_, of_position_, of_load_;
+  std::vector<double> free_radius_mm_ = std::vector<double>(81);  // on the plate, over the arc
   std::vector<Seen> places_;
   Eigen::MatrixXd normal_, transposed_;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes_;
