@@ -8,7 +8,10 @@ using namespace chain;
 
 TEST_CASE("the whole chain: a frame allocates nothing", "[chain]") {
   const PressedFrames frames(240, 320, 2);
-  Fingertip fingertip(frames.options());
+  FingertipOptions options = frames.options();
+  options.six_axes.emplace();
+  options.six_axes->cap.base_radius_mm = options.wrench.base_radius_mm;
+  Fingertip fingertip(options);
   const Inputs first = frames[0].view(), second = frames[1].view();
   const long before = test::allocations();
   const auto a = touch_of(fingertip, first);

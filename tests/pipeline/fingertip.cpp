@@ -551,6 +551,29 @@ TEST_CASE("a fingertip says that nothing touches", "[chain]") {
   CHECK(std::string(name_of(touch.status)) == "no contact");
 }
 
+TEST_CASE("six axes from printed dots begin with a frame that touches nothing", "[chain]") {
+  FingertipOptions options = frames().options();
+  options.six_axes.emplace();
+  options.six_axes->cap = {options.wrench.base_radius_mm, 11};
+  options.six_axes->modulus_n_per_mm = 0.5;
+  Fingertip tip(options);
+  const Inputs in = frames()[0].view();
+  const auto free = free_frame();
+  const auto untouched = [&](double pressure_mpa) {
+    return tip(free.red, free.green, in.dots_px, in.side_dots_mm, pressure_mpa).six_axes;
+  };
+  CHECK(touch_of(tip, in).six_axes.status == fingerpad::MembraneWrenchStatus::too_few_marks);
+  CHECK(untouched(test::nan).status == fingerpad::MembraneWrenchStatus::no_pressure);
+  // whatever the dots show in a free frame, it is no force
+  const auto none = untouched(0.016);
+  REQUIRE(none.ok());
+  CHECK(none.marks >= 20);
+  CHECK(std::fabs(none.force_n.z) < 0.02);
+  CHECK(std::hypot(none.force_n.x, none.force_n.y) < 0.01);
+  // dots under the object are left out
+  CHECK(touch_of(tip, in).six_axes.marks <= none.marks);
+}
+
 TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothing touches",
           "[chain][mistakes]") {
   struct Mistake {

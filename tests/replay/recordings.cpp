@@ -145,7 +145,9 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "shift_x_mm,shift_y_mm,shift_rad,"
         "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
         "moment_z_nm,"
-        "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm");
+        "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
+        "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,"
+        "wrench_mz_sd_nm");
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");

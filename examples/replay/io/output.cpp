@@ -27,7 +27,8 @@ constexpr const char* columns =
     "shift_x_mm,shift_y_mm,shift_rad,"
     "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
     "moment_z_nm,"
-    "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm";
+    "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
+    "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,wrench_mz_sd_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
 
 const char* words_of(fingerpad::SlipEvidence evidence) {
@@ -243,6 +244,9 @@ void FramesCsv::write(const FrameRow& row) {
   for (const double value :
        {force.x, force.y, force.z, moment.x / metre, moment.y / metre, moment.z / metre}) {
     stream_ << ',' << cell_of(row.has_wrench() ? value : none);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    stream_ << ',' << cell_of(row.wrench_sd[k] / (k < 3 ? 1 : metre));
   }
   stream_ << '\n';
 }

@@ -4,6 +4,7 @@
 // The output folder, written all or nothing: it is built under a temporary name beside its place
 // and moved there when it is complete. The folder of an earlier run is replaced; any other is
 // refused.
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -58,6 +59,7 @@ struct FrameRow {
   ForceFrame force;  ///< by look-up
   std::optional<TrueForce> truth;
   fingerpad::WrenchResult<double> wrench;  ///< not ok(), empty cells, if there is no result
+  std::array<double, 6> wrench_sd;         ///< N and N mm
   double pressure_mpa = 0;                 ///< NaN if unknown
   bool pad_has_changed = false;            ///< its light differs from the reference
 

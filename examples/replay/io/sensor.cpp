@@ -121,7 +121,8 @@ Rim read_rim(const Section& root) {
       {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
        {"membrane_modulus_n_per_mm", "shear modulus times thickness of the membrane, N/mm"},
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
-       {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"}});
+       {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
+       {"side_dots", "rows of side dots in the pictures, which nothing here reads"}});
   Rim rim;
   rim.side_dot_length_mm = section.positive("side_dot_length_mm");
   if (section.has("membrane_modulus_n_per_mm")) {

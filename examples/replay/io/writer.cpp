@@ -43,7 +43,8 @@ void Writer::operator()(Scene scene) {
   rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
                    scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
                    scene.dots.stick.result, scene.dots.stick.evidence, scene.force, scene.truth,
-                   scene.wrench.result, scene.pressure_mpa, scene.pad_has_changed});
+                   scene.wrench.result, scene.wrench.sd, scene.pressure_mpa,
+                   scene.pad_has_changed});
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);

@@ -55,7 +55,10 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
 class Step : public FingertipStep {
  public:
   Step(const Recording& recording, const FingertipOptions& options)
-      : recording_(recording), with_dots_(options.free_dots_mm.rows() > 0), fingertip_(options) {
+      : recording_(recording),
+        with_dots_(options.free_dots_mm.rows() > 0),
+        with_six_axes_(options.six_axes.has_value()),
+        fingertip_(options) {
     if (options.rim_mm.rows() > 0) {
       no_side_dots_.create(recording.side_dots->border_mm.size());
       no_side_dots_ = cv::Vec3d::all(not_known);
@@ -148,8 +151,20 @@ class Step : public FingertipStep {
 
   WrenchFrame wrench_of(const FingertipResult& touch) const {
     WrenchFrame wrench;
-    wrench.present = !no_side_dots_.empty();
+    wrench.present = with_six_axes_ || !no_side_dots_.empty();
     wrench.result = touch.wrench;
+    const fingerpad::MembraneWrenchResult& dots = touch.six_axes;
+    if (dots.ok()) {
+      const bool touches = !touch.contact.ok() || touch.contact.in_contact();
+      wrench.result.status =
+          touches ? fingerpad::WrenchStatus::ok : fingerpad::WrenchStatus::no_contact;
+      wrench.result.force_n = dots.force_n;
+      wrench.result.moment_n_mm = dots.moment_n_mm;
+      wrench.result.by_modulus = true;
+      for (Eigen::Index k = 0; k < 6; ++k) {
+        wrench.sd[static_cast<std::size_t>(k)] = std::sqrt(dots.covariance(k, k));
+      }
+    }
     for (int column = 0; column < no_side_dots_.cols; ++column) {
       const cv::Vec3d& at = recording_.side_dots->border_mm(0, column);
       wrench.tension.push_back({{at[0], at[1], at[2]}, fingertip_.rim_tension(column)});
@@ -158,7 +173,7 @@ class Step : public FingertipStep {
   }
 
   const Recording& recording_;
-  bool with_dots_;
+  bool with_dots_, with_six_axes_;
   Fingertip fingertip_;
   SpaceGrid no_side_dots_;  ///< of a frame without them; empty without six-axis force
 };

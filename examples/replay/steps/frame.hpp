@@ -3,6 +3,7 @@
 #pragma once
 // The results of a frame for tables and pictures. Forces are those that the object exerts on the
 // pad; NaN means unknown.
+#include <array>
 #include <limits>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -65,6 +66,8 @@ struct RimTension {
 struct WrenchFrame {
   bool present = false;  ///< false: the recording lacks data for the force
   fingerpad::WrenchResult<double> result;
+  /// Standard deviations of force and moment, N and N mm; NaN if side dots gave them.
+  std::array<double, 6> sd = {not_known, not_known, not_known, not_known, not_known, not_known};
   std::vector<RimTension> tension;  ///< around the rim
 };
 

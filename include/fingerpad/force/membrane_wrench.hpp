@@ -78,10 +78,13 @@ constexpr const char* name_of(MembraneWrenchStatus status) {
 /// What the object exerts on the pad, about the origin at the middle of the base.
 struct MembraneWrenchResult {
   MembraneWrenchStatus status = MembraneWrenchStatus::too_few_marks;
-  Point3<double> force_n, moment_n_mm;
-  Eigen::Matrix<double, 6, 6> covariance;  ///< of force and moment, N and N mm
-  double misfit = 0;                       ///< rms residual over sd_px, without outliers
-  Index marks = 0;                         ///< used
+  Point3<double> force_n = detail::missing_point<double>();
+  Point3<double> moment_n_mm = detail::missing_point<double>();
+  /// Of force and moment, N and N mm.
+  Eigen::Matrix<double, 6, 6> covariance =
+      Eigen::Matrix<double, 6, 6>::Constant(not_a_number<double>());
+  double misfit = 0;  ///< rms residual over sd_px, without outliers
+  Index marks = 0;    ///< used
   bool ok() const { return status == MembraneWrenchStatus::ok; }
 };
 
@@ -211,9 +214,6 @@ class MembraneWrench {
   static MembraneWrenchResult refused(MembraneWrenchStatus status) {
     MembraneWrenchResult result;
     result.status = status;
-    const double nan = not_a_number<double>();
-    result.force_n = result.moment_n_mm = {nan, nan, nan};
-    result.covariance.setConstant(nan);
     return result;
   }
 

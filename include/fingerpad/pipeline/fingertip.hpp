@@ -7,7 +7,7 @@
 //
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
 //   auto touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s);
-//   if (touch.ok()) { ... touch.wrench.force_n ... }
+//   if (touch.ok()) { ... touch.six_axes.force_n ... }
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -57,6 +57,9 @@ class Fingertip {
       find_flat_area_.emplace(camera_, red_.rows, red_.cols,
                               o.flat_area.value_or(FlatAreaOptions{}));
     }
+    if (dots_ && o.six_axes) {
+      six_axes_.emplace(o.camera, o);
+    }
     if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
       force_.emplace(camera_, *pad_, o);
     }
@@ -90,6 +93,12 @@ class Fingertip {
     }
     if (look_up_ && touch.contact.ok()) {
       (*look_up_)(touch);
+    }
+    if (six_axes_) {
+      if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact()) {
+        six_axes_->learn(dots, pressure_mpa);
+      }
+      touch.six_axes = (*six_axes_)(dots, dots_->touching.view(), pressure_mpa);
     }
     if (force_) {
       touch.wrench = force_->wrench(force_->map, side_dots_mm, pressure_mpa);
@@ -199,7 +208,7 @@ class Fingertip {
     touch.lacks_stick_ratio = dots_ && !is_finite(touch.stick.stick_ratio);
     touch.lacks_look_up =
         look_up_ && (look_up_->by_area || look_up_->by_depth) && !touch.normal.has_force();
-    touch.lacks_wrench = force_ && !touch.wrench.ok();
+    touch.lacks_wrench = (force_ || six_axes_) && !touch.wrench.ok() && !touch.six_axes.ok();
     const bool all = !touch.lacks_motion && !touch.lacks_stick_ratio && !touch.lacks_look_up &&
                      !touch.lacks_wrench;
     return sure && all ? FingertipStatus::ok : FingertipStatus::partial;
@@ -217,6 +226,7 @@ class Fingertip {
   std::optional<EquivalentFlatArea<>> find_flat_area_;
   std::optional<detail::FingertipDots> dots_;
   std::optional<detail::FingertipLookUp> look_up_;
+  std::optional<detail::FingertipSixAxes> six_axes_;
   std::optional<detail::FingertipForce> force_;
 };
 

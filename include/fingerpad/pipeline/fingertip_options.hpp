@@ -13,6 +13,7 @@
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/force/look_up.hpp"
+#include "fingerpad/force/membrane_wrench.hpp"
 #include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
@@ -58,7 +59,12 @@ struct FingertipOptions {
   std::optional<Shear<>> shear = {};  ///< empty: not used
   bool shear_by_depth = false;        ///< looks up shear by mm of depth instead of mm^2 of area
 
-  /// Positions at which the side dots are fixed; one row; empty: no six-axis force.
+  /// Six axes from the printed dots near the rim; the base radius, rubber and its modulus must be
+  /// known; empty: not used. Needs the pressure, and begins with a frame that touches nothing.
+  std::optional<MembraneWrenchOptions> six_axes = {};
+  double dot_sd_px = 0.06;  ///< of a dot's place in the picture, > 0
+
+  /// Six axes from shape and side dots: positions at which these are fixed; one row; empty: none.
   StridedView<const Point3<double>> rim_mm = {};
   /// With modulus_n_per_mm, frames whose pressure is NaN are answered too.
   WrenchOptions<double> wrench = {};
@@ -88,7 +94,7 @@ struct [[nodiscard]] FingertipResult {
   bool lacks_motion = false;      ///< no pose
   bool lacks_stick_ratio = false;
   bool lacks_look_up = false;  ///< no normal force by look-up
-  bool lacks_wrench = false;
+  bool lacks_wrench = false;   ///< no six axes
 
   DepthResult depth;
   FrameStatus neighbour_light = FrameStatus::ok;  ///< of its removal
@@ -102,8 +108,9 @@ struct [[nodiscard]] FingertipResult {
   /// From the area if that is known, because the curve by depth holds for one shape only; else by
   /// depth.
   ForceResult<double> normal;
-  ShearResult<double> shear;    ///< from the curve
-  WrenchResult<double> wrench;  ///< six axes
+  ShearResult<double> shear;      ///< from the curve
+  MembraneWrenchResult six_axes;  ///< from printed dots
+  WrenchResult<double> wrench;    ///< six axes from shape and side dots
 
   bool ok() const { return status == FingertipStatus::ok; }
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
@@ -82,8 +83,12 @@ struct FingertipDots {
     touch.motion = motion(at_mm.view(), touching.view(), slips, depth_noise_mm);
   }
 
-  /// The load from the six-axis force, else from the look-up; unknown without both.
+  /// The load from a six-axis force, else from the look-up; unknown without both.
   ContactLoad<double> load_of(const FingertipResult& touch) const {
+    if (touch.six_axes.ok()) {
+      return contact_load(touch.six_axes.force_n, touch.six_axes.moment_n_mm, at_mm.view(),
+                          touching.view());
+    }
     if (touch.wrench.ok()) {
       return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
                           touching.view());
@@ -128,7 +133,80 @@ struct FingertipLookUp {
   }
 };
 
-/// The six-axis force.
+/// Six axes from the printed dots near the rim. Where they lie on the membrane is learnt from the
+/// first frames that touch nothing, and then kept, so that a slow touch is never taken for a free
+/// pad.
+struct FingertipSixAxes {
+  struct Place {
+    double arc_mm = 0, azimuth_rad = 0;
+    int frames = 0;
+  };
+  static constexpr int free_frames = 16;
+
+  MembraneWrench<> wrench;
+  OwnedGrid<Place> places;
+  std::vector<fingerpad::Mark> marks;
+  double dot_sd_px;
+  int learnt = 0;
+
+  FingertipSixAxes(const Camera<double>& camera, const FingertipOptions& o)
+      : wrench(camera, *o.six_axes),
+        places(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
+        dot_sd_px(o.dot_sd_px) {
+    require("FingertipOptions", {{"dot_sd_px", o.dot_sd_px, positive}});
+    marks.reserve(places.cells.size());
+  }
+
+  /// Learns from a frame that touches nothing.
+  template <class Dots>
+  void learn(const Dots& dots_px, double pressure_mpa) {
+    if (learnt == free_frames || !wrench.begin(pressure_mpa)) {
+      return;
+    }
+    ++learnt;
+    for_each(dots_px, [&](Place& place, const Point2<double>& px) {
+      if (const auto found = wrench.place_in_free_picture(px)) {
+        ++place.frames;
+        const double turn =
+            std::remainder(found->azimuth_rad - place.azimuth_rad, 2 * std::numbers::pi);
+        place.arc_mm += (found->arc_mm - place.arc_mm) / place.frames;
+        place.azimuth_rad += turn / place.frames;
+      }
+    });
+  }
+
+  /// Of the dots that nothing touches.
+  template <class Dots>
+  MembraneWrenchResult operator()(const Dots& dots_px,
+                                  const StridedView<const std::uint8_t>& touching,
+                                  double pressure_mpa) {
+    marks.clear();
+    const std::uint8_t* touched = touching.data();
+    for_each(dots_px, [&](const Place& place, const Point2<double>& px) {
+      if (place.frames > 0 && *touched == 0) {
+        const double sd_px = dot_sd_px * std::sqrt(1 + 1.0 / place.frames);
+        marks.push_back({place.arc_mm, place.azimuth_rad, px, sd_px});
+      }
+      ++touched;
+    });
+    return wrench(marks, pressure_mpa);
+  }
+
+ private:
+  template <class Dots, class Use>
+  void for_each(const Dots& dots_px, const Use& use) {
+    using Traits = point_traits<cell_t<Dots>>;
+    for (Index i = 0; i < places.rows; ++i) {
+      for (Index j = 0; j < places.cols; ++j) {
+        const cell_t<Dots> p = dots_px(i, j);
+        use(places.view()(i, j),
+            Point2<double>{static_cast<double>(Traits::x(p)), static_cast<double>(Traits::y(p))});
+      }
+    }
+  }
+};
+
+/// The six-axis force from shape and side dots.
 struct FingertipForce {
   PadHeights<> heights;
   HeightMap<double> map;
