@@ -31,7 +31,7 @@ METHODS = {
     "object_motion": ("Motion of the object", ["frame of 21x21 dots"]),
     "stick_ratio": ("Stick ratio", ["frame of 21x21 dots"]),
     "spatial_stick_ratio": ("Stick ratio in space", []),
-    "contact_slide": ("Contact slide", []),
+    "gel_slide": ("Gel slide", []),
     "grip_control": ("Grip control", ["closed loop"]),
     "wrench": ("Six-axis force", ["72 side dots"]),
     "membrane_wrench": ("Six axes from dots in the picture", ["frame of 250 dots"]),

@@ -22,7 +22,7 @@
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/gel_frames.hpp"
 #include "support/slipping_patch.hpp"
@@ -183,14 +183,12 @@ std::vector<Kind> of_gel(bool with_slide) {
     contact.drag(0.5, {0.05 * k, 0.02 * k});
     return camera.dots(contact, random);
   });
-  static const ContactSlide<> slide(gel.mask().rows, gel.mask().cols, dots[0].rows(),
-                                    dots[0].cols());
-  static auto state = slide.start();
+  static GelSlide slide(gel.mask().rows, gel.mask().cols, dots[0]);
   const auto call = [with_slide](const std::vector<cv::Mat>& frames) {
     return [&frames, with_slide](int k) {
       (void)gel(frames[variant(k)]);
       if (with_slide) {
-        (void)slide(gel.imprint(), gel.mask(), dots[variant(k)], state);
+        (void)slide(gel.imprint(), gel.mask(), dots[variant(k)]);
       }
     };
   };

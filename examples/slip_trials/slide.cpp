@@ -103,10 +103,10 @@ SlideSeries slide_in(const std::vector<cv::Mat>& frames,
   int largest = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto seen = step(frames[k], dots[k], mask);
-    series.slide.push_back(static_cast<double>(seen.slide.slide));
-    series.lost.push_back(static_cast<double>(seen.slide.lost));
-    series.evidence.push_back(static_cast<double>(seen.slide.evidence));
-    series.recoil.push_back(static_cast<double>(seen.recoil.recoil));
+    series.slide.push_back(seen.slide.slide);
+    series.lost.push_back(seen.slide.lost);
+    series.evidence.push_back(seen.slide.evidence);
+    series.recoil.push_back(seen.slide.recoil);
     largest = (std::max)(largest, seen.contact.contact_px);
     if (static_cast<double>(seen.contact.contact_px) < gone * static_cast<double>(largest)) {
       series.end = (std::min)(series.end, k);

@@ -25,10 +25,10 @@
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
@@ -282,7 +282,6 @@ TEST_CASE("depth and slide of a gel from every grid", "[adapt]") {
   };
   const auto free = image(30, 0), before = image(30, 60), after = image(34, 60);
   IntensityDepth<double> depth(free, {});
-  const ContactSlide<double> slide(64, 80, 5, 7);
   test::Image<Point2<double>> dots(5, 7);
   for (Index i = 0; i < 5; ++i) {
     for (Index j = 0; j < 7; ++j) {
@@ -295,17 +294,17 @@ TEST_CASE("depth and slide of a gel from every grid", "[adapt]") {
       touches(i, j) = before(i, j) < 125 ? 1 : 0;
     }
   }
-  auto begun = slide.start();
-  (void)slide(before, touches, dots, begun);
+  GelSlide begun(64, 80, dots);
+  (void)begun(before, touches, dots);
   struct Answer {
     test::Image<double> depth{64, 80};
-    SlideResult<double> slide;
+    SlideResult slide;
   };
   const auto answer = [&](const auto& frame, const auto& flags, const auto& points) {
     Answer a;
     REQUIRE(depth(frame, a.depth) != FrameStatus::refused);
-    auto state = begun;
-    a.slide = slide(frame, flags, points, state);
+    GelSlide slide = begun;
+    a.slide = slide(frame, flags, points);
     return a;
   };
   const Answer truth = answer(after, touches, dots);

@@ -10,7 +10,7 @@
 
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -233,12 +233,10 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     for (Index k = 0; k < 9; ++k) {
       dots(k / 3, k % 3) = {double(39 + 20 * (k % 3)), double(27 + 20 * (k / 3))};
     }
-    const ContactSlide<double> slide(PressedBall::rows, PressedBall::cols, 3, 3,
-                                     {.pitch_px = 20, .cell_px = 1});
-    auto state = slide.start();
-    (void)slide(before.depth_mm, before.contact, dots, state);
+    GelSlide slide(PressedBall::rows, PressedBall::cols, dots, {.cell_px = 1});
+    (void)slide(before.depth_mm, before.contact, dots);
     const BallSeen after = see(way);
-    const auto slid = slide(after.depth_mm, after.contact, dots, state);
+    const auto slid = slide(after.depth_mm, after.contact, dots);
     RC_LOG() << slid.imprint_px.x << ", " << slid.imprint_px.y << " +- " << slid.imprint_sd_px
              << " px for " << way.x << ", " << way.y << "\n";
     RC_ASSERT(slid.status == SlideStatus::updated);

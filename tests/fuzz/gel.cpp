@@ -9,7 +9,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;
@@ -54,13 +54,11 @@ void try_slide(Input& in, double scale) {
   const cv::Mat_<Pixel> second = in.flag() ? first : any_frame<Pixel>(in, rows, cols, scale);
   const std::vector<cv::Mat> free = {first, second};
   GelContact gel(free, options), fresh(free, options);
-  SlideTest test;
-  test.pitch_px = in.number(2, 40);
-  test.cell_px = in.number(1, 6);
-  test.min_cells = in.whole(30, 60);
-  const ContactSlide<> slide(gel.mask().rows, gel.mask().cols, 4, 5, test);
-  auto state = slide.start();
+  SlideOptions slide_options;
+  slide_options.cell_px = in.number(0.1, 2);
+  slide_options.min_cells = in.whole(30, 60);
   const auto home = fuzz::any_dots<Point2<float>>(in, 4, 5);
+  GelSlide slide(gel.mask().rows, gel.mask().cols, home.view(), slide_options);
   for (int frame = 0; frame < 4; ++frame) {
     cv::Mat_<Pixel> now = first.clone();
     // a square is pressed somewhere, with odd pixels beside it
@@ -80,14 +78,16 @@ void try_slide(Input& in, double scale) {
     require(!r.in_contact() || is_finite(r.center_px), "a contact has a finite center");
     const auto dots = fuzz::moved_dots(in, home);
     const cv::Mat_<float> imprint = gel.imprint();
-    auto copy = state;
-    const auto slid = fuzz::frame([&] { return slide(imprint, gel.mask(), dots.view(), state); });
-    const auto copied = slide(imprint, gel.mask(), dots.view(), copy);
-    require(slid.accepted() && slid.status == copied.status &&
-                fuzz::same_bits(slid.evidence, copied.evidence),
-            "a copied state gives the same bits");
+    GelSlide copy = slide;
+    const auto slid = fuzz::frame([&] { return slide(imprint, gel.mask(), dots.view()); });
+    const auto copied = copy(imprint, gel.mask(), dots.view());
+    require(slid.status != SlideStatus::refused && slid.status == copied.status &&
+                fuzz::same_bits(slid.evidence, copied.evidence) &&
+                fuzz::same_bits(slid.recoil, copied.recoil),
+            "a copy gives the same bits");
     require(is_finite(slid.slide_px) && slid.evidence >= 0 && slid.lost >= 0 && slid.lost <= 1,
             "a slide is finite and a share is in [0, 1]");
+    require(!(slid.recoil < 0), "a recoil is not negative");
     require(slid.held() >= 0 && slid.held() <= 1, "the held share is in [0, 1]");
   }
 }

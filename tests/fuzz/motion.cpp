@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Shift of a contact and recoil of a pad by any dots, the object's surface in any depth map:
-// answers are finite, the same frame gives the same bits, and a reset is a start.
+// Shift of a contact by any dots, the object's surface in any depth map:
+// answers are finite, and the same frame gives the same bits.
 #include <cstdint>
 
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/slip/recoil.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;
@@ -63,29 +62,6 @@ void try_motion(Input& in) {
   }
 }
 
-void try_recoil(Input& in) {
-  const Index rows = in.whole(0, 12), cols = in.whole(0, 12);
-  const auto free = any_dots<Point2<float>>(in, rows, cols);
-  RecoilTest test;
-  test.pitch_px = in.number(1, 50);
-  test.quantile = in.number(0, 1);
-  test.min_dots = in.whole(1, 50);
-  const Recoil<> recoil(free.view(), test);
-  auto state = recoil.start();
-  for (int frame = 0; frame < 5; ++frame) {
-    const auto dots = fuzz::moved_dots(in, free);
-    const auto r = fuzz::frame([&] { return recoil(dots.view(), state); });
-    require(!r.ok() || (is_finite(r.displaced) && r.recoil >= 0), "a recoil is not negative");
-  }
-  state.reset();
-  auto fresh = recoil.start();
-  const auto dots = fuzz::moved_dots(in, free);
-  const auto a = recoil(dots.view(), state), b = recoil(dots.view(), fresh);
-  require(fuzz::same_bits(a.displaced, b.displaced) && fuzz::same_bits(a.recoil, b.recoil) &&
-              a.alarm == b.alarm,
-          "a reset equals a start");
-}
-
 void try_surface(Input& in) {
   const Index rows = in.side(0, 30), cols = in.side(0, 30);
   Camera<double> camera;
@@ -106,15 +82,13 @@ void try_surface(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    switch (in.whole(0, 3)) {
+    switch (in.whole(0, 2)) {
       case 0:
         return try_shift(in);
       case 1:
         return try_surface(in);
-      case 2:
-        return try_motion(in);
       default:
-        return try_recoil(in);
+        return try_motion(in);
     }
   });
 }

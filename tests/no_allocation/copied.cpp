@@ -6,9 +6,8 @@
 #include <cstdint>
 
 #include "fingerpad/foam/taxels.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
-#include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"
@@ -65,24 +64,17 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
     auto copy = shift;
     CHECK(taken([&] { (void)copy(dots_mm, all_touch); }) == 0);
   }
-  SECTION("recoil") {
-    const Recoil<> recoil(dots_px, {.pitch_px = 20});
-    const auto state = recoil.start();
-    auto copy = state;
-    CHECK(taken([&] { CHECK(recoil(dots_px, copy).enough); }) == 0);
-  }
   const auto seen = [](Index i, Index j) {
     const double x = static_cast<double>(j - 32), y = static_cast<double>(i - 32);
     return 100 * (1 + 0.3 * std::sin(x / 3) * std::cos(y / 2)) * (x * x + y * y < 400 ? 0.5 : 1);
   };
   const LazyView frame(64, 64, seen);
   SECTION("slide of the contact") {
-    const ContactSlide<> slide(64, 64, side, side, {.pitch_px = 20, .cell_px = 1});
+    const GelSlide slide(64, 64, dots_px, {.cell_px = 1});
     const LazyView touch(64, 64, [](Index i, Index j) { return std::hypot(i - 32, j - 32) < 20; });
-    const auto state = slide.start();
-    auto copy = state;
+    auto copy = slide;
     bool found = true;
-    CHECK(taken([&] { found = slide(frame, touch, dots_px, copy).ok() && found; }) == 0);
+    CHECK(taken([&] { found = copy(frame, touch, dots_px).ok() && found; }) == 0);
     CHECK(found);
   }
   SECTION("features of the taxels") {

@@ -9,9 +9,8 @@
 #include <type_traits>
 
 #include "fingerpad/adapt/dual.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/slip/grip_control.hpp"
-#include "fingerpad/slip/recoil.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
@@ -144,9 +143,9 @@ TEST_CASE("friction limit: learnt when the dots slide, answers when they do not"
 
 TEST_CASE("friction limit: a gel's imprint in place of the dots", "[friction_limit]") {
   FrictionLimit<double> limit;
-  SlideResult<float> slide;
+  SlideResult slide;
   slide.status = SlideStatus::updated;
-  slide.evidence = 0.25F;
+  slide.evidence = 0.25;
   auto r = limit(pull(1), slide);
   CHECK(r.evidence == SlipEvidence::imprint);
   CHECK(r.update == RatioUpdate::fresh);
@@ -154,7 +153,7 @@ TEST_CASE("friction limit: a gel's imprint in place of the dots", "[friction_lim
   CHECK(r.status == FrictionLimitStatus::no_limit);
   CHECK(limit(ContactLoad<double>{}, slide).stick_ratio == 0.75);
 
-  slide.evidence = 1.5F;  // the alarm teaches the limit
+  slide.evidence = 1.5;  // the alarm teaches the limit
   r = limit(pull(2.2), slide);
   CHECK(r.evidence == SlipEvidence::both);
   CHECK(r.stick_ratio == 0);
@@ -170,15 +169,6 @@ TEST_CASE("friction limit: a gel's imprint in place of the dots", "[friction_lim
   CHECK(!r.ok());
   slide.status = SlideStatus::no_contact;
   CHECK(limit(ContactLoad<double>{}, slide).update == RatioUpdate::no_contact);
-
-  RecoilResult<float> recoil;
-  CHECK(!limit(ContactLoad<double>{}, recoil).ok());
-  recoil.status = FrameStatus::ok;
-  recoil.enough = true;
-  recoil.evidence = 0.5F;
-  r = limit(ContactLoad<double>{}, recoil);
-  CHECK(r.evidence == SlipEvidence::imprint);
-  CHECK(r.stick_ratio == 0.5);
 }
 
 TEST_CASE("friction limit: what it learns", "[friction_limit]") {

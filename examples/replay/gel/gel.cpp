@@ -17,7 +17,7 @@ namespace {
 constexpr int most_shown = 5;  // frames above the chart
 constexpr const char* columns =
     "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
-    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,rotation_rad,area_lost,recoil_pitches,"
+    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,area_lost,recoil_pitches,"
     "slip_evidence,slip";
 
 SlideStep step_of(const Options& options, const FreePad& free, const DotSource& dots) {
@@ -64,14 +64,13 @@ void GelReplay::operator()(int frame,
 
 void GelReplay::write_row(const GelRow& row) {
   const GelFrame& seen = row.seen;
-  const auto number = [](float value) { return cell_of(static_cast<double>(value)); };
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
          << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
          << name_of(seen.slide.status) << ',' << seen.slide.dots << ','
-         << number(seen.slide.slide_px.x) << ',' << number(seen.slide.slide_px.y) << ','
-         << number(seen.slide.slide) << ',' << number(seen.slide.rotation_rad) << ','
-         << number(seen.slide.lost) << ',' << (seen.recoil.ok() ? number(seen.recoil.recoil) : "")
-         << ',' << number(seen.slide.evidence) << ',' << (seen.slide.alarm ? 1 : 0) << '\n';
+         << cell_of(seen.slide.slide_px.x) << ',' << cell_of(seen.slide.slide_px.y) << ','
+         << cell_of(seen.slide.slide) << ',' << cell_of(seen.slide.lost) << ','
+         << cell_of(seen.slide.recoil) << ',' << cell_of(seen.slide.evidence) << ','
+         << (seen.slide.alarm ? 1 : 0) << '\n';
 }
 
 void GelReplay::finish() {

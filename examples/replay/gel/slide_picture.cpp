@@ -17,7 +17,7 @@ const Ink doubt_ink(0, 150, 230);
 const Ink free_ink(150, 146, 142);
 
 double evidence_of(const GelFrame& seen) {
-  return static_cast<double>(seen.slide.evidence);
+  return seen.slide.evidence;
 }
 
 using Outline = std::vector<std::vector<cv::Point>>;
@@ -81,8 +81,7 @@ void paint_scene(Canvas& canvas, const Place& place, const GelScene& scene, doub
     return;
   }
   const Ink colour = slip_ink(scene.seen);
-  const Spot slide(static_cast<double>(scene.seen.slide.slide_px.x),
-                   static_cast<double>(scene.seen.slide.slide_px.y));
+  const Spot slide(scene.seen.slide.slide_px.x, scene.seen.slide.slide_px.y);
   paint_outline(canvas, place, outline, -slide, 0.7 * line, ink::white, true);
   paint_outline(canvas, place, outline, {0, 0}, line, colour, false);
   const Spot middle = middle_of(scene);
@@ -96,8 +95,8 @@ std::string words_of(const GelFrame& seen) {
     return seen.slide.lost > 0 ? "no more contact" : "no contact";
   }
   const std::string known =
-      format("slid %.2f pitches past the dots, %.0f %% of the contact area lost",
-             static_cast<double>(seen.slide.slide), 100 * static_cast<double>(seen.slide.lost));
+      format("slid %.2f pitches past the dots, %.0f %% of the contact area lost", seen.slide.slide,
+             100 * seen.slide.lost);
   return seen.slide.ok() ? known : known + " (" + name_of(seen.slide.status) + ")";
 }
 

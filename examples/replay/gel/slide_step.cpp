@@ -38,13 +38,6 @@ fingerpad::GelOptions options_of(const std::vector<cv::Mat>& free_frames, double
   return gel_options_for(dot_px > 0 ? dot_px : usual);
 }
 
-fingerpad::SlideTest slide_test_for(const DotGrid& dots, const fingerpad::GelOptions& options) {
-  fingerpad::SlideTest slide;
-  slide.pitch_px = pitch_px(dots);
-  slide.cell_px = options.cell_px;
-  return slide;
-}
-
 /// The first frames, up to the first that shows a contact relative to frame 0.
 std::vector<cv::Mat> free_first_frames(Recording& recording) {
   recording.frames.seek(0);
@@ -62,23 +55,6 @@ std::vector<cv::Mat> free_first_frames(Recording& recording) {
 }
 
 }  // namespace
-
-double pitch_px(const DotGrid& dots) {
-  std::vector<double> distances;
-  for (int i = 0; i < dots.rows; ++i) {
-    for (int j = 0; j < dots.cols; ++j) {
-      for (const cv::Point beside : {cv::Point(j + 1, i), cv::Point(j, i + 1)}) {
-        if (beside.x < dots.cols && beside.y < dots.rows) {
-          const double distance = cv::norm(dots(i, j) - dots(beside));
-          if (std::isfinite(distance)) {
-            distances.push_back(distance);
-          }
-        }
-      }
-    }
-  }
-  return median_of(distances);
-}
 
 fingerpad::GelOptions gel_options_for(double dot_px) {
   fingerpad::GelOptions options;
@@ -114,26 +90,21 @@ SlideStep::SlideStep(const std::vector<cv::Mat>& free_frames,
       contact_(colours_of(free_frames), options_),
       slide_(contact_.mask().rows,
              contact_.mask().cols,
-             free_dots.rows,
-             free_dots.cols,
-             slide_test_for(free_dots, options_)),
-      slide_state_(slide_.start()),
-      recoil_(free_dots, {.pitch_px = pitch_px(free_dots)}),
-      recoil_state_(recoil_.start()) {}
+             free_dots,
+             {.cell_px = static_cast<double>(options_.cell_px)}) {}
 
 GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask) {
   const cv::Mat frame = colours_of(image);
   GelFrame seen;
   const auto start = std::chrono::steady_clock::now();
   seen.contact = contact_(frame);
-  seen.slide = slide_(contact_.imprint(), contact_.mask(), dots, slide_state_);
+  seen.slide = slide_(contact_.imprint(), contact_.mask(), dots);
   const auto end = std::chrono::steady_clock::now();
   ms_.push_back(std::chrono::duration<double, std::milli>(end - start).count());
   mask.create(frame.size());
   mask = 0;
   const cv::Rect whole({0, 0}, contact_.mask().size() * options_.cell_px);
   cv::resize(contact_.mask(), mask(whole), whole.size(), 0, 0, cv::INTER_NEAREST);
-  seen.recoil = recoil_(dots, recoil_state_);
   seen.slip = limit_(fingerpad::ContactLoad<double>{}, seen.slide);
   return seen;
 }

@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "fingerpad/gel/gel_contact.hpp"
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/recoil.hpp"
 #include "replay/dots/grid.hpp"
 #include "replay/io/recording.hpp"
 
 namespace replay {
-
-/// Median distance of neighbouring dots; NaN if no two neighbours are present.
-double pitch_px(const DotGrid& dots);
 
 /// Options of the contact for dots of this diameter.
 fingerpad::GelOptions gel_options_for(double dot_px);
@@ -34,8 +30,7 @@ FreePad free_pad_of(Recording& recording);
 /// One frame of a gel.
 struct GelFrame {
   fingerpad::GelResult contact;
-  fingerpad::SlideResult<float> slide;
-  fingerpad::RecoilResult<float> recoil;
+  fingerpad::SlideResult slide;
   fingerpad::SlipResult<double> slip;  ///< fused evidence, without a force
 };
 
@@ -53,10 +48,7 @@ class SlideStep {
  private:
   fingerpad::GelOptions options_;
   fingerpad::GelContact contact_;
-  fingerpad::ContactSlide<> slide_;
-  fingerpad::ContactSlide<>::State slide_state_;
-  fingerpad::Recoil<> recoil_;
-  fingerpad::Recoil<>::State recoil_state_;
+  fingerpad::GelSlide slide_;
   fingerpad::FrictionLimit<> limit_;
   std::vector<double> ms_;
 };

@@ -95,6 +95,8 @@ class GelContact {
             "free_frames: type", type_, "of 8 or 16 bit, with 1 or 3 channels");
     const int gap = cvRound(in_cells(options.max_gap_px / 2));
     closing_ = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * gap + 1, 2 * gap + 1});
+    const int half_dot = cvCeil(in_cells(options.dot_px) / 2) + 1;  // and the cell beside
+    dot_ = cv::Mat::ones(2 * half_dot + 1, 2 * half_dot + 1, CV_8U);
     inner_ = {{gap, gap}, size_ / options.cell_px};
     wide_.create(inner_.height + 2 * gap, inner_.width + 2 * gap);
     for (cv::Mat_<float>* image : {&weight_, &both_, &grey_, &share_, &difference_, &imprint_}) {
@@ -102,6 +104,7 @@ class GelContact {
     }
     relative_.create(inner_.size());
     values_.reserve(static_cast<std::size_t>(inner_.area()));
+    holes_.reserve(values_.capacity());
     learn(free_frames);
     (void)(*this)(free_frames.front());  // OpenCV allocates the other images
   }
@@ -113,15 +116,15 @@ class GelContact {
   /// The difference from the free pad, cell by cell, to which the threshold applies: the root mean
   /// square over the channels, as a fraction of the free brightness; NaN where it is unknown.
   const cv::Mat_<float>& difference() const { return difference_; }
-  /// The same with the dots filled in from the gel around them. GelSlide follows it: an imprint
-  /// with holes at the dots would seem to move with the dots. Computed on each call, O(rows cols).
+  /// The same with the dots of both frames filled in from the gel beside them; what is dark but
+  /// wider than a dot is shade, and stays. GelSlide follows it: an imprint with holes at the dots
+  /// would seem to move with the dots. Computed on each call, O(rows cols).
   const cv::Mat_<float>& imprint() {
     for (int k = 0; k < inner_.area(); ++k) {
-      if (both_(k) == 0 && share_(k) > min_share) {
-        both_(k) = 1;
-        relative_(k) = smooth_(k) / share_(k);
-      }
+      both_(k) = grey_(k) > 0 ? free_seen_(k) : 0;
     }
+    relate();
+    fill(relative_, weight_, both_);
     average(imprint_);
     return imprint_;
   }
@@ -194,11 +197,16 @@ class GelContact {
     const auto count = static_cast<float>(frames.size());
     free_ = cv::Mat_<cv::Vec3f>(inner_.size(), cv::Vec3f());
     free_weight_ = cv::Mat_<float>(inner_.size(), 1.0F);
+    free_seen_ = free_weight_.clone();
     for (const cv::Mat& frame : frames) {
       read(frame);
       free_ += now_ / static_cast<double>(count);
       cv::multiply(free_weight_, weight_, free_weight_);
+      for (int k = 0; k < inner_.area(); ++k) {
+        free_seen_(k) = grey_(k) > 0 ? free_seen_(k) : 0;
+      }
     }
+    fill(free_, free_weight_, free_seen_);
     std::vector<float> noise;
     for (const cv::Mat& frame : frames) {
       read(frame);
@@ -218,7 +226,6 @@ class GelContact {
   /// border.
   void compare(bool by_border) {
     cv::multiply(weight_, free_weight_, both_);
-    cv::Vec3f gain;
     for (int c = 0; c < 3; ++c) {
       values_.clear();
       for (int k = 0; k < inner_.area(); k += by_border ? 1 : 1 + inner_.area() / 2048) {
@@ -226,14 +233,44 @@ class GelContact {
           values_.push_back(now_(k)[c] / free_(k)[c]);
         }
       }
-      gain[c] = quantile(0.5, 1);
+      gain_[c] = quantile(0.5, 1);
     }
+    relate();
+    average(difference_);
+  }
+  void relate() {
     for (int k = 0; k < inner_.area(); ++k) {
       for (int c = 0; c < 3; ++c) {
-        relative_(k)[c] = both_(k) > 0 ? now_(k)[c] / (gain[c] * free_(k)[c]) - 1 : 0;
+        relative_(k)[c] = both_(k) > 0 ? now_(k)[c] / (gain_[c] * free_(k)[c]) - 1 : 0;
       }
     }
-    average(difference_);
+  }
+  /// Fills gaps in the gel of a dot's width: each cell becomes the mean of those beside it, by
+  /// over-relaxation, and counts as seen. Cells of the border stay as they are.
+  void fill(cv::Mat_<cv::Vec3f>& image, const cv::Mat_<float>& gel, cv::Mat_<float>& seen) {
+    cv::morphologyEx(gel, share_, cv::MORPH_CLOSE, dot_);
+    holes_.clear();
+    for (int k = 0; k < inner_.area(); ++k) {
+      if (gel(k) == 0 && share_(k) > 0) {
+        share_(k) = is_border(k) ? 0 : 1;
+        if (share_(k) > 0) {
+          seen(k) = 1;
+          image(k) = image(k - 1);
+          holes_.push_back(k);
+        }
+      }
+    }
+    for (int sweep = 0; sweep < 20; ++sweep) {
+      for (const int k : holes_) {
+        cv::Vec3f sum;
+        float count = 0;
+        for (const int beside : {k - 1, k + 1, k - inner_.width, k + inner_.width}) {
+          sum += share_(beside) * image(beside);
+          count += share_(beside);
+        }
+        image(k) += 1.4F * (sum / (std::max)(count, 1.0F) - image(k));
+      }
+    }
   }
   /// Root mean square over the channels of the mean of relative_ around each cell.
   void average(cv::Mat_<float>& length) {
@@ -298,12 +335,15 @@ class GelContact {
   int type_ = 0;    // of a frame
   cv::Rect inner_;  // the frame in wide_, in cells
   double threshold_ = 0;
-  cv::Mat closing_, half_, small_, colours_;
+  cv::Vec3f gain_;
+  cv::Mat closing_, dot_, half_, small_, colours_;
   cv::Mat_<cv::Vec3f> now_, free_, relative_, smooth_;
-  cv::Mat_<float> weight_, free_weight_, both_, share_, grey_, around_, difference_, imprint_;
+  cv::Mat_<float> weight_, free_weight_, free_seen_, both_, share_, grey_, around_, difference_,
+      imprint_;
   cv::Mat_<unsigned char> mask_, wide_;
   std::vector<std::vector<cv::Point>> outlines_;
   std::vector<float> values_;
+  std::vector<int> holes_;
 };
 
 }  // namespace v0

@@ -147,7 +147,7 @@ constexpr const char* name_of(FrictionLimitStatus status) {
 enum class SlipEvidence : std::uint8_t {
   none,
   dots,      ///< the stick ratio of the dots
-  imprint,   ///< on a gel: slide of the imprint, lost area, or recoil
+  imprint,   ///< on a gel: slide of the imprint, or lost area
   friction,  ///< the friction limit alone
   both,      ///< friction, and dots or imprint
 };
@@ -280,7 +280,7 @@ class FrictionLimit {
     return result;
   }
 
-  /// The same for a gel, where `imprint`, the result of ContactSlide or Recoil, replaces the dots.
+  /// The same for a gel, where `imprint`, the result of GelSlide, replaces the dots.
   template <class Imprint>
     requires requires(const Imprint& imprint) {
       imprint.ok();

@@ -3,7 +3,7 @@
 // Slide of a contact on a gel, from imprints of 120 x 160 cells (frames of 640 x 480 pixels) and
 // their dots. Error: of the imprint's travel, in px, over 10 recordings in which a ball is dragged
 // until it slides.
-#include "fingerpad/slip/contact_slide.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 
 #include <memory>
 #include <opencv2/imgproc.hpp>
@@ -46,45 +46,34 @@ std::vector<Frame> recording(std::uint64_t seed) {
   return frames;
 }
 
-template <class S>
-ContactSlide<S> slide_for(const std::vector<Frame>& frames) {
-  return {120, 160, frames[0].dots.rows(), frames[0].dots.cols(), {.pitch_px = 60}};
-}
-
-template <class S>
 std::vector<double> errors() {
   std::vector<double> errors;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto frames = recording(seed);
-    const auto slide = slide_for<S>(frames);
-    auto state = slide.start();
+    GelSlide slide(120, 160, frames[0].dots);
     for (const Frame& frame : frames) {
-      const auto result = slide(frame.imprint, frame.contact, frame.dots, state);
-      const auto way = frame.ball_px - frames[0].ball_px;
-      errors.push_back(
-          std::hypot(double(result.imprint_px.x) - way.x, double(result.imprint_px.y) - way.y));
+      const SlideResult result = slide(frame.imprint, frame.contact, frame.dots);
+      errors.push_back(norm(result.imprint_px - (frame.ball_px - frames[0].ball_px)));
     }
   }
   return errors;
 }
 
-template <class S>
-void add(const std::string& name) {
+void add_slide() {
   const auto frames = std::make_shared<const std::vector<Frame>>(recording(99));
   const bench::Memory memory;
-  const auto slide = std::make_shared<ContactSlide<S>>(slide_for<S>(*frames));
-  const auto state = std::make_shared<typename ContactSlide<S>::State>(slide->start());
+  const auto slide = std::make_shared<GelSlide>(120, 160, (*frames)[0].dots);
   bench::add(
-      "imprint 120x160/" + name, 120 * 160, memory.bytes(),
-      [=, at = std::size_t{0}]() mutable {
+      "imprint 120x160/default", 120 * 160, memory.bytes(),
+      [=, first = *slide, at = std::size_t{0}]() mutable {
         const Frame& frame = (*frames)[at];
-        benchmark::DoNotOptimize((*slide)(frame.imprint, frame.contact, frame.dots, *state));
+        benchmark::DoNotOptimize((*slide)(frame.imprint, frame.contact, frame.dots));
         at = (at + 1) % frames->size();
         if (at == 0) {
-          state->reset();
+          *slide = first;
         }
       },
-      [](auto& counters) { bench::note_errors(counters, "imprint's way", "px", errors<S>()); });
+      [](auto& counters) { bench::note_errors(counters, "imprint's way", "px", errors()); });
 }
 
 /// Translation only, of the whole image.
@@ -110,8 +99,7 @@ void add_opencv() {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  add<float>("default");
-  add<double>("double");
+  add_slide();
   add_opencv();
   bench::add_streaming("imprint 120x160", 120 * 160);
   return bench::run(argc, argv);
