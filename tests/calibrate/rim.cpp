@@ -104,18 +104,18 @@ RimCalibration<> calibration_of(const Pad& pad, const std::vector<double>& press
 const std::vector<double> four_pressures = {0.008, 0.012, 0.016, 0.020};
 
 /// The free pad of tests/data/rim_free.csv.
-struct FreePad {
+struct MeasuredPad {
   Row border;
   std::vector<double> pressures;
   std::vector<Row> dots;
 };
 
-FreePad finite_element_pad() {
+MeasuredPad finite_element_pad() {
   const auto folder = std::filesystem::path(__FILE__).parent_path().parent_path() / "data";
   std::ifstream file(folder / "rim_free.csv");
   std::string line;
   std::getline(file, line);
-  FreePad pad;
+  MeasuredPad pad;
   while (std::getline(file, line)) {
     double p = 0;
     int j = 0;
@@ -136,7 +136,7 @@ FreePad finite_element_pad() {
   return pad;
 }
 
-void add_all(const FreePad& pad, RimCalibration<>& calibration) {
+void add_all(const MeasuredPad& pad, RimCalibration<>& calibration) {
   for (std::size_t k = 0; k < pad.dots.size(); ++k) {
     REQUIRE(calibration.add(k, grid_of(pad.dots[k]), pad.pressures[k]));
   }
@@ -406,7 +406,7 @@ TEST_CASE("rim calibration: its errors carry into the six axes as told", "[wrenc
 
 TEST_CASE("rim calibration: finite elements of a free pad", "[wrench]") {
   // true L 0.79995 mm, mu t 0.5 N/mm
-  const FreePad pad = finite_element_pad();
+  const MeasuredPad pad = finite_element_pad();
   RimCalibration<> calibration(grid_of(pad.border), radius_mm);
   add_all(pad, calibration);
   const auto chord = calibration.fit();
@@ -437,7 +437,7 @@ TEST_CASE("rim calibration: float", "[wrench]") {
   CHECK(fit.length_mm == Approx(0.8).epsilon(1e-3));
   CHECK(fit.modulus_n_per_mm == Approx(0.5).epsilon(5e-3));
 
-  const FreePad free = finite_element_pad();
+  const MeasuredPad free = finite_element_pad();
   const auto narrow = [](const Row& row) {
     std::vector<Point3<float>> points;
     for (const Point& p : row) {
