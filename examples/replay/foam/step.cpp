@@ -50,12 +50,12 @@ fingerpad::PreslipOptions with(PreslipRule rule, fingerpad::PreslipOptions optio
 }  // namespace
 
 std::string FoamAlarm::names() const {
-  const std::string lift = name_of(PreslipRule::grasp_lift);
-  const std::string optimise = name_of(PreslipRule::grasp_optimise);
-  return any() ? grasp_lift && grasp_optimise ? optimise + "+" + lift
-                 : grasp_lift                 ? lift
-                                              : optimise
-               : "";
+  std::string names = grasp_optimise ? name_of(PreslipRule::grasp_optimise) : "";
+  if (grasp_lift) {
+    names += grasp_optimise ? "+" : "";
+    names += name_of(PreslipRule::grasp_lift);
+  }
+  return names;
 }
 
 bool FoamRow::was_taken() const {

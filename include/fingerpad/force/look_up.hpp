@@ -122,7 +122,7 @@ std::string check(const ForceCurve<S>& c) {
     for (std::size_t j = 0; j < c.size && refusal.empty(); ++j) {
       const S largest_sq = S(1.000001) * c.covariance[k][k] * c.covariance[j][j];
       if (!(value(square(c.covariance[k][j])) <= value(largest_sq))) {
-        refusal = std::string(owner) + ": covariance has a correlation above 1";
+        refusal = "ForceCurve: covariance has a correlation above 1";
       }
     }
   }
