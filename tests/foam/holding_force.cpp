@@ -474,7 +474,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
     (void)loosening(PreslipStatus::steady);
   }
   CHECK(number(loosening.command().force_n) == 8.25);
-  auto end = tell(loosening, std::string(16, '-') + "p");
+  auto end = tell(loosening, "----------------p");
   CHECK(end.phase == SearchPhase::found);
   CHECK(number(end.preslip_force_n) == 8.25);
   CHECK(number(end.force_n) == 8.75);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -210,7 +210,15 @@ TEST_CASE("membrane wrench: pixels of a free pad give its dots' places", "[membr
   MembraneWrench<> wrench(s.camera(), options);
   CHECK_FALSE(wrench.place_in_free_picture({300, 200}).has_value());  // not begun
   REQUIRE(wrench.begin(s.frames[0].pressure_mpa));
-  const FreePad<double> pad(s.cap);
+  double last_mm = 0;
+  for (const double radius_px : {230.0, 210.0, 190.0, 170.0}) {
+    const auto mark =
+        wrench.place_in_free_picture({s.camera().center_x_px, s.camera().center_y_px + radius_px});
+    REQUIRE(mark.has_value());
+    CHECK(mark->arc_mm > last_mm);
+    CHECK(mark->azimuth_rad == Approx(std::numbers::pi / 2));
+    last_mm = mark->arc_mm;
+  }
   CHECK_FALSE(wrench.place_in_free_picture({s.camera().center_x_px, s.camera().center_y_px}));
   CHECK_FALSE(wrench.place_in_free_picture({std::nan(""), 200}));
   CHECK_FALSE(wrench.place_in_free_picture({0, 0}));  // beyond the rim

@@ -40,7 +40,7 @@ struct Mark {
 };
 
 struct MembraneWrenchOptions {
-  StressFreeCap<double> cap;
+  StressFreeCap<double> cap = {};
   double modulus_n_per_mm = 0.5;     ///< mu t: shear modulus times thickness, > 0
   double modulus_sd_share = 0.01;    ///< what it is known to, in [0, 1]
   double pressure_sd_share = 0.002;  ///< noise of the gauge, of the pressure, in [0, 1]
