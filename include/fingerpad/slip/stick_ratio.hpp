@@ -397,12 +397,45 @@ class StickRatio {
     }
   }
 
+  /// Visits a dot and its eight neighbours with their weights in a mean.
+  template <class Visit>
+  void around(Index k, const Visit& visit) const {
+    const Index w = frame_.width;
+    visit(S(6), k);
+    for (const Index beside : {Index(-1), Index(1), -w, w}) {
+      visit(S(2), k + beside);
+    }
+    for (const Index across : {-w - 1, 1 - w, w - 1, w + 1}) {
+      visit(S(1), k + across);
+    }
+  }
+
   void collect(const P* then) {
     pairs_.clear();
     for (const Index k : placed_) {
       if (is_finite(then[k])) {
-        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, S(0), S(0)});
+        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, S(0), limit_sq_});
       }
+    }
+    if (frame_.in_image) {
+      widen_limits(then);
+    }
+  }
+
+  /// Where neighbours are missing or do not touch, a mean has more noise. Beside dots that slip too
+  /// far to count in it the limit stays: there a large slip is likely to be true. In space it stays
+  /// as well, as dots that leave a rolling object at the edge slip by little.
+  void widen_limits(const P* then) {
+    const S chance = S(2 * std::log(1 / options_.false_slip));
+    for (Pair& p : pairs_) {
+      S weights = S(0), squares = S(0);
+      around(p.k, [&](const S& weight, Index at) {
+        const S there = S(is_finite(then[at]) && is_finite(now_[at]) ? 1 : 0);
+        weights = weights + weight * there;
+        squares = squares + weight * weight * there;
+      });
+      const S variance = S(2) * sd_ * sd_ * squares / (weights * weights);
+      p.limit_sq = (std::max)(limit_sq_, S(chance * variance));
     }
   }
 
@@ -604,34 +637,22 @@ class StickRatio {
   /// count, so that they do not affect the sticking dots beside them, and stay as they are.
   void average() {
     const S gate_sq = S(36) * limit_sq_;
-    const double chance = 2 * std::log(1 / options_.false_slip);
-    const Index w = frame_.width;
     for (const Pair& p : pairs_) {
       const bool counts = value(squared_norm(p.slip)) < value(gate_sq);
       small_[p.k] = counts ? SmallSlip{p.slip, S(1)} : SmallSlip{};
     }
     for (Pair& p : pairs_) {
-      const SmallSlip* const s = &small_[p.k];
       Point2<S> sum = {S(0), S(0)};
       S weights = S(0), squares = S(0);
-      const auto add = [&](const S& weight, const SmallSlip& of) {
+      around(p.k, [&](const S& weight, Index at) {
+        const SmallSlip& of = small_[at];
         sum += weight * of.slip;
         weights = weights + weight * of.counts;
         squares = squares + weight * weight * of.counts;
-      };
-      add(S(6), s[0]);
-      for (const Index beside : {Index(-1), Index(1), -w, w}) {
-        add(S(2), s[beside]);
-      }
-      for (const Index across : {-w - 1, 1 - w, w - 1, w + 1}) {
-        add(S(1), s[across]);
-      }
-      const bool counts = value(s->counts) > 0;
+      });
+      const bool counts = value(small_[p.k].counts) > 0;
       p.mean = counts ? sum / weights : p.slip;
       p.variance = S(2) * sd_ * sd_ * (counts ? squares / (weights * weights) : S(1));
-      // a mean over few neighbours, beside missing dots, has more noise. In space the limit stays,
-      // as dots that leave a rolling object at the edge slip by little
-      p.limit_sq = frame_.in_image ? (std::max)(limit_sq_, S(chance) * p.variance) : limit_sq_;
     }
   }
   /// Share of the noise of one dot that remains in its mean with eight neighbours.
