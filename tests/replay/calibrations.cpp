@@ -129,17 +129,17 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
   CHECK(sensor.smoothing_px == 15);
   REQUIRE(sensor.force);
-  CHECK(sensor.force->by_area->curve.coefficients[1] == 0.1 / 3);
-  CHECK(sensor.force->by_area->curve.to == 500.0 / 3);
-  const auto& errors = sensor.force->by_area->errors;
+  CHECK(sensor.force->by_area->coefficients[1] == 0.1 / 3);
+  CHECK(sensor.force->by_area->to == 500.0 / 3);
+  const auto& errors = *sensor.force->by_area;
   CHECK(errors.residual_sd_n == 0.1 / 3);
   CHECK(errors.covariance[0][0] == 1.0 / 3);
   CHECK(errors.covariance[0][1] == -1.0 / 7);
   CHECK(errors.covariance[1][1] == 1.0 / 9);
   CHECK(errors.covariance[2][2] == 0);
-  CHECK(sensor.force->by_depth->curve.from == 0.1 / 3);
+  CHECK(sensor.force->by_depth->from == 0.1 / 3);
   CHECK(sensor.force->shear->by == replay::ContactMeasure::depth);
-  CHECK(sensor.force->shear->normalisation.displacement_exponent == 1.0 / 3);
+  CHECK(sensor.force->shear->map.force.exponent == 1.0 / 3);
   CHECK(sensor.force->shear->map.moment.coefficients[0] == 1000.0 / 3);
   CHECK(sensor.force->shear->map.moment.to == 0.1 / 3);
 
@@ -208,7 +208,7 @@ TEST_CASE("Forces are looked up with the errors that calibrate found", "[calibra
   whole.sections["force"] = found.sections["force"];
   const fs::path file = scratch("force_errors");
   save(whole, file);
-  const auto loaded = replay::read_sensor(file).force->by_area->errors;
+  const auto loaded = replay::read_sensor(file).force->by_area;
   const auto& expected = found.reports.front().covariance;
   REQUIRE(expected.size() == 4);
   CHECK(expected[3][3] > 0);
