@@ -208,7 +208,7 @@ TEST_CASE("Forces are looked up with the errors that calibrate found", "[calibra
   whole.sections["force"] = found.sections["force"];
   const fs::path file = scratch("force_errors");
   save(whole, file);
-  const auto loaded = replay::read_sensor(file).force->by_area;
+  const auto loaded = *replay::read_sensor(file).force->by_area;
   const auto& expected = found.reports.front().covariance;
   REQUIRE(expected.size() == 4);
   CHECK(expected[3][3] > 0);
