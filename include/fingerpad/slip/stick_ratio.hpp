@@ -497,9 +497,12 @@ class StickRatio {
         found = follow(from);
       }
     }
+    // where hardly a dot follows, these weights would lead to dots that stand still together
+    const Index followers =
+        std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return follows(p); });
     // noise gives averaged slips a mean square of 4 gain^2; at twice that the weight is 1/4
     const S quarter_sq = S(8 * gain() * gain()) * sd_ * sd_;
-    for (int pass = 0; pass < 3; ++pass) {
+    for (int pass = 0; pass < 3 && followers >= min_followers; ++pass) {
       average();
       for (Pair& p : pairs_) {
         p.weight = square(quarter_sq / (quarter_sq + squared_norm(p.mean)));
@@ -509,6 +512,8 @@ class StickRatio {
     average();
     return found;
   }
+  /// Within the limit: a slip has more noise than its mean over neighbours.
+  bool follows(const Pair& p) const { return value(squared_norm(p.slip)) < 2 * value(limit_sq_); }
   /// Fits the motion to the dots around a place, then to those that follow it within the limit,
   /// until their number no longer changes.
   bool follow(const P& from) {
@@ -522,10 +527,8 @@ class StickRatio {
       before = pass > 0 ? followers : -1;
       followers = 0;
       for (Pair& p : pairs_) {
-        // a slip has more noise than its mean over neighbours
-        const bool follows = value(squared_norm(p.slip)) < 2 * value(limit_sq_);
-        p.weight = S(follows ? 1 : 0);
-        followers += follows ? 1 : 0;
+        p.weight = S(follows(p) ? 1 : 0);
+        followers += follows(p) ? 1 : 0;
       }
       if (followers < min_followers) {
         weigh_nearest();
@@ -559,9 +562,10 @@ class StickRatio {
     const P center = mean_of([](const Pair& p) { return p.now; });
     for (const Pair& p : pairs_) {
       const Point2<S> moved = {p.now.x - p.then.x, p.now.y - p.then.y};
-      const S sq = squared_norm(moved), grown = (scale_ - S(1)) / scale_;
+      const Point2<S> arm = {p.now.x - center.x, p.now.y - center.y};
+      const S sq = squared_norm(moved), grown = (scale_ - S(1)) / scale_ * dot(arm, moved);
       if (value(sq) > value(ahead_sq) && 2 * value(dot(p.slip, moved)) > value(sq) &&
-          16 * value(grown * grown * squared_norm(p.now - center)) <= value(sq)) {
+          4 * value(grown) <= value(sq)) {
         ahead = &p;
         ahead_sq = sq;
       }
