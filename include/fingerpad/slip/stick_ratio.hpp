@@ -497,12 +497,14 @@ class StickRatio {
         found = follow(from);
       }
     }
-    // where hardly a dot follows, these weights would lead to dots that stand still together
+    // where hardly a dot follows in the image, these weights would lead to dots that stand still
+    // together, as the scale fits them
     const Index followers =
         std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return follows(p); });
     // noise gives averaged slips a mean square of 4 gain^2; at twice that the weight is 1/4
     const S quarter_sq = S(8 * gain() * gain()) * sd_ * sd_;
-    for (int pass = 0; pass < 3 && followers >= min_followers; ++pass) {
+    const bool refines = !frame_.in_image || followers >= min_followers;
+    for (int pass = 0; pass < 3 && refines; ++pass) {
       average();
       for (Pair& p : pairs_) {
         p.weight = square(quarter_sq / (quarter_sq + squared_norm(p.mean)));
@@ -555,15 +557,19 @@ class StickRatio {
   }
   /// If the dots of the fit have hardly moved, the dot that is ahead of them by more than half of
   /// its displacement and has moved furthest, more than half of d_max; nullptr: there is none. The
-  /// scale must not explain more than a quarter of the displacement.
+  /// scale must not explain more than a quarter of the displacement; that of a few dots, which may
+  /// be standing and moving ones by chance, explains nothing.
   const Pair* outrunner() const {
     const Pair* ahead = nullptr;
     S ahead_sq = furthest_sq_ / S(4);
     const P center = mean_of([](const Pair& p) { return p.now; });
+    const Index fitted = std::count_if(pairs_.begin(), pairs_.end(),
+                                       [](const Pair& p) { return value(p.weight) > 0; });
+    const S growth = 8 * fitted < detail::size_of(pairs_) ? S(0) : (scale_ - S(1)) / scale_;
     for (const Pair& p : pairs_) {
       const Point2<S> moved = {p.now.x - p.then.x, p.now.y - p.then.y};
       const Point2<S> arm = {p.now.x - center.x, p.now.y - center.y};
-      const S sq = squared_norm(moved), grown = (scale_ - S(1)) / scale_ * dot(arm, moved);
+      const S sq = squared_norm(moved), grown = growth * dot(arm, moved);
       if (value(sq) > value(ahead_sq) && 2 * value(dot(p.slip, moved)) > value(sq) &&
           4 * value(grown) <= value(sq)) {
         ahead = &p;
