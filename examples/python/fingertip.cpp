@@ -4,6 +4,7 @@
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -80,7 +81,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const std::optional<fingerpad::Shear<>>& shear,
                                 bool shear_by_depth,
                                 const Count& smoothing_px,
-                                const Number& dot_radius_px) {
+                                const Number& dot_radius_px,
+                                const std::optional<fingerpad::MembraneWrenchOptions>& six_axes) {
   Options options{camera, fluid, reference};
   options.sampling = 1;         // depth at every pixel, because Python reads whole arrays
   options.flat_area.emplace();  // also without a curve
@@ -96,6 +98,7 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.shear_by_depth = shear_by_depth;
   options.smoothing_px = count_of<int>(smoothing_px, "smoothing_px");
   options.dot_radius_px = number_of(dot_radius_px, "dot_radius_px");
+  options.six_axes = six_axes;
   return std::make_unique<Fingertip>(options);
 }
 
@@ -205,12 +208,55 @@ void bind_result(py::module_& module) {
       .def_readonly("by_depth", &Result::by_depth)
       .def_readonly("normal", &Result::normal, "by area and depth together")
       .def_readonly("shear", &Result::shear)
+      .def_readonly("six_axes", &Result::six_axes)
       .def_readonly("wrench", &Result::wrench);
+}
+
+void bind_six_axes(py::module_& module) {
+  using SixAxes = fingerpad::MembraneWrenchOptions;
+  bind_options<SixAxes>(module, "MembraneWrenchOptions",
+                        "Six axes from printed dots near the rim; see force/membrane_wrench.hpp.")
+      .def_property(
+          "base_radius_mm", [](const SixAxes& o) { return o.cap.base_radius_mm; },
+          [](SixAxes& o, double mm) { o.cap.base_radius_mm = mm; })
+      .def_property(
+          "stress_free_height_mm", [](const SixAxes& o) { return o.cap.height_mm; },
+          [](SixAxes& o, double mm) { o.cap.height_mm = mm; })
+      .def_property(
+          "mooney_share", [](const SixAxes& o) { return o.cap.mooney_share; },
+          [](SixAxes& o, double share) { o.cap.mooney_share = share; })
+      .def_readwrite("modulus_n_per_mm", &SixAxes::modulus_n_per_mm)
+      .def_readwrite("modulus_sd_share", &SixAxes::modulus_sd_share)
+      .def_readwrite("pressure_sd_share", &SixAxes::pressure_sd_share)
+      .def_readwrite("reach_share", &SixAxes::reach_share)
+      .def_readwrite("loose_rim", &SixAxes::loose_rim);
+  using SixAxesResult = fingerpad::MembraneWrenchResult;
+  py::class_<SixAxesResult>(module, "MembraneWrenchResult",
+                            "Force and moment that the object exerts on the pad. NaN unless ok.")
+      .def_property_readonly("ok", &SixAxesResult::ok)
+      .def_property_readonly("status", [](const SixAxesResult& r) { return name_of(r.status); })
+      .def_property_readonly("force_n", [](const SixAxesResult& r) { return as_tuple(r.force_n); })
+      .def_property_readonly("moment_n_mm",
+                             [](const SixAxesResult& r) { return as_tuple(r.moment_n_mm); })
+      .def_property_readonly(
+          "covariance",
+          [](const SixAxesResult& r) {
+            std::array<std::array<double, 6>, 6> rows;
+            for (Eigen::Index i = 0; i < 36; ++i) {
+              rows[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] =
+                  r.covariance(i / 6, i % 6);
+            }
+            return rows;
+          },
+          "6 x 6, of force in N and moment in N mm")
+      .def_readonly("misfit", &SixAxesResult::misfit)
+      .def_readonly("marks", &SixAxesResult::marks, "dots used");
 }
 
 }  // namespace
 
 void bind_fingertip(py::module_& module) {
+  bind_six_axes(module);
   bind_motion_result(module);
   bind_slip_result(module);
   bind_shift_and_area(module);
@@ -223,10 +269,10 @@ void bind_fingertip(py::module_& module) {
            py::arg("free_dots_mm"), py::arg("rim_mm"),
            py::arg("contact") = fingerpad::ContactTest(),
            py::arg("stick") = StickOptions{.noise = 0.005}, py::arg("wrench") = WrenchOptions(),
-           py::arg("force_of_area") = py::none(),
-           py::arg("force_of_depth") = py::none(), py::arg("shear") = py::none(),
-           py::arg("shear_by_depth") = false, py::arg("smoothing_px") = py::int_(29),
-           py::arg("dot_radius_px") = py::float_(0.0),
+           py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
+           py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
+           py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
+           py::arg("six_axes") = py::none(),
            "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
            "(0, 0, 3): no results from dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
            "fixed; (0, 0, 3): no six-axis force. force_of_area, force_of_depth: NormalForce;\n"

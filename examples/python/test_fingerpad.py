@@ -206,10 +206,10 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
 
 
 @pytest.mark.parametrize("said, call", [
-    ("dots_px is a masked array", lambda ratio, d: ratio(np.ma.masked_less(d, 1), d[..., 0] > 0)),
+    ("dots is a masked array", lambda ratio, d: ratio(np.ma.masked_less(d, 1), d[..., 0] > 0)),
     ("in_contact is a masked", lambda ratio, d: ratio(d, np.ma.masked_less(d[..., 0], 1) > 0)),
-    ("dots_px must be a NumPy array, not list: convert it with np.asarray", lambda ratio, d: ratio(d.tolist(), d)),
-    ("dots_px must be a NumPy array, not NoneType", lambda ratio, d: ratio(None, d)),
+    ("dots must be a NumPy array, not list: convert it with np.asarray", lambda ratio, d: ratio(d.tolist(), d)),
+    ("dots must be a NumPy array, not NoneType", lambda ratio, d: ratio(None, d)),
     ("time_s must be a real number, not str", lambda ratio, d: ratio(d, d[..., 0] > 0, "1")),
     ("time_s must be a real number, not bool", lambda ratio, d: ratio(d, d[..., 0] > 0, True)),
     ("measure must contain real numbers, .* not complex128",
@@ -285,8 +285,8 @@ def test_dots_that_move_as_one_stick_and_those_that_stay_behind_slip():
     ratio = fp.StickRatio(9, 9, fp.StickOptions(free_frames=0))
     inside = np.hypot(x - 80, y - 80) < 70
     for k in range(12):
-        dots = free + [0.6 * k, 0]
-        dots[inside & (x > 110)] -= [0.3 * k, 0]
+        dots = free + [1.2 * k, 0]
+        dots[inside & (x > 110)] -= [0.6 * k, 0]
         states, result = ratio(dots, inside, 0.02 * k)
     assert result.ok and result.status == "updated"
     slipping = inside & (x > 110)
