@@ -125,12 +125,14 @@ template <class S>
 ShearMap<Long> exactly(const ShearMap<S>& m) {
   const auto law = [](const ShearLaw<S>& of) {
     ShearLaw<Long> exact;
-    std::copy(of.coefficients.begin(), of.coefficients.end(), exact.coefficients.begin());
-    exact.exponent = of.exponent;
-    exact.to = of.to;
+    std::transform(of.coefficients.begin(), of.coefficients.end(), exact.coefficients.begin(),
+                   [](const S& c) { return Long(c); });
+    exact.exponent = Long(of.exponent);
+    exact.to = Long(of.to);
     return exact;
   };
-  return {m.reference, law(m.force), law(m.moment), m.x_by_x, m.x_by_y, m.y_by_x, m.y_by_y};
+  return {Long(m.reference), law(m.force),   law(m.moment), Long(m.x_by_x),
+          Long(m.x_by_y),    Long(m.y_by_x), Long(m.y_by_y)};
 }
 
 template <class S>

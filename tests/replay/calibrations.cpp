@@ -240,7 +240,7 @@ TEST_CASE("A sensor file with unknown keys or of another version is refused", "[
         std::string::npos);
   CHECK(with("/force/by_area/covariance/1", json::array({1})).find("2 rows of 2 numbers") !=
         std::string::npos);
-  CHECK(with("/force/by_area/covariance/1/1", -1).find("variance of a parameter = -1") !=
+  CHECK(with("/force/by_area/covariance/1/1", -1).find("variance of a coefficient = -1") !=
         std::string::npos);
   CHECK(with("/stick/slip_mm", 1).find("unknown key stick.slip_mm") != std::string::npos);
   CHECK(with("/rim/lenght_mm", 1).find("unknown key rim.lenght_mm") != std::string::npos);

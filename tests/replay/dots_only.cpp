@@ -274,14 +274,20 @@ TEST_CASE("the stick ratio of a dots-only recording") {
   for (const char* empty : {"depth_max_mm", "contact_area_mm2", "object_x_mm", "valid_share"}) {
     CHECK(rows[7].at(empty).empty());
   }
-  CHECK(rows[7].at("stick_ratio_updated") == "1");
-  CHECK(std::abs(std::stod(rows[7].at("stick_ratio")) - 0.75) < 1e-6);
+  // frames between those that the stick ratio compares keep its answer
+  std::size_t answered = 7;
+  while (answered > 0 && rows[answered].at("stick_ratio_updated") != "1") {
+    --answered;
+  }
+  REQUIRE(answered >= 4);
+  CHECK(std::abs(std::stod(rows[answered].at("stick_ratio")) - 0.75) < 1e-6);
+  CHECK(rows[7].at("stick_ratio") == rows[answered].at("stick_ratio"));
 
   std::map<std::string, int> states;
   for (const auto& dot : table_of(recording.out() / "dots.csv")) {
     CHECK(dot.at("contact") == "1");
     CHECK(dot.at("x_mm").empty());
-    if (dot.at("frame") == "7") {
+    if (dot.at("frame") == std::to_string(answered)) {
       ++states[dot.at("stick")];
       CHECK((dot.at("stick") == "1") == (std::stoi(dot.at("row")) < 6));
     }
