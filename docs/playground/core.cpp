@@ -145,7 +145,7 @@ class VirtualPad {
     }
     auto reference =
         fit_reference(view_.camera, view_.fluid, red.view(), green.view(), true_depth_mm_.view());
-    Options o{view_.camera, view_.fluid, std::move(reference), size_px, size_px};
+    Options o{view_.camera, view_.fluid, std::move(reference)};
     // windows and rings as wide on the pad as those by default are at 0.08 mm a pixel
     const double scale = 0.08 / view_.camera.pitch_mm;
     o.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
