@@ -175,7 +175,8 @@ class MembraneWrench {
     MembraneWrenchResult result;
     const double load = pressure_mpa / options_.modulus_n_per_mm;
     if (!(is_finite(load) && load > 0) || (!begun_ && !begin(pressure_mpa))) {
-      return refused(MembraneWrenchStatus::no_pressure);
+      result.status = MembraneWrenchStatus::no_pressure;
+      return result;
     }
     places_.clear();
     for (const Mark& mark : marks) {
@@ -186,7 +187,7 @@ class MembraneWrench {
     }
     result.marks = static_cast<Index>(places_.size());
     if (places_.size() < 20) {
-      return refused(MembraneWrenchStatus::too_few_marks);
+      return result;  // too_few_marks
     }
     centre_.back() = load;
     parameters_.back() = load;
@@ -195,7 +196,8 @@ class MembraneWrench {
       parameters_ = centre_;
       if (!fit()) {
         parameters_ = centre_;
-        return refused(MembraneWrenchStatus::not_solved);
+        result.status = MembraneWrenchStatus::not_solved;
+        return result;
       }
     }
     result.misfit = misfit_;
@@ -210,12 +212,6 @@ class MembraneWrench {
     Point2<double> px;
     double sd_px;
   };
-
-  static MembraneWrenchResult refused(MembraneWrenchStatus status) {
-    MembraneWrenchResult result;
-    result.status = status;
-    return result;
-  }
 
   Point3<double> on_plate(const Point2<double>& px) const {
     return point_at(camera_, px.y, px.x, 0.0);
@@ -257,7 +253,9 @@ class MembraneWrench {
       const auto row = static_cast<Eigen::Index>(2 * i);
       if (!(at.z > 0)) {  // no camera sees below the base
         residuals_[row] = residuals_[row + 1] = 0;
-        slopes_.middleRows(row, 2).setZero();
+        if (with_slopes) {
+          slopes_.middleRows(row, 2).setZero();
+        }
         continue;
       }
       const Point2<double> px = pixel_of(camera_, at);

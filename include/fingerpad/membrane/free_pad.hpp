@@ -66,14 +66,12 @@ class FreePad {
     arc_mm_ = cap.arc_mm();
   }
 
-  /// The rim under p / (mu t) = `load_per_mm` > 0, where the membrane begins `offset_mm` outward of
-  /// the rim along its normal. Empty if there is no equilibrium with a stretch of the apex below 2.
-  std::optional<FreeRim<S>> rim(const S& load_per_mm, const S& offset_mm = S(0)) const {
-    using std::cos;
+  /// The rim under p / (mu t) = `load_per_mm` > 0. Empty if there is no equilibrium with a stretch
+  /// of the apex below 2.
+  std::optional<FreeRim<S>> rim(const S& load_per_mm) const {
     using std::sin;
     const auto miss = [&](const S& stretch) {
-      const Place at = profile(stretch, load_per_mm);
-      return S(at.r - cap_.base_radius_mm - offset_mm * sin(at.phi));
+      return S(profile(stretch, load_per_mm).r - cap_.base_radius_mm);
     };
     const auto misses = [&](double stretch) {
       return static_cast<double>(value(miss(S(stretch))));
@@ -100,7 +98,7 @@ class FreePad {
     const Place at = profile(stretch, load_per_mm);
     const S hoop = at.r / cap_.rho_mm(S(0));
     const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop);
-    return FreeRim<S>{at.phi, along, offset_mm * cos(at.phi) - at.z};
+    return FreeRim<S>{at.phi, along, -at.z};
   }
 
  private:
