@@ -112,7 +112,7 @@ def write_methods(build, docs, about):
     plots.summary(overview, pictures / "summary.png")
     (docs / "speed_and_error.md").write_text(f"""# Speed against error
 
-Every method, every policy and every scalar: what a frame costs and how far it is from the truth, on
+Every method, every choice and every scalar: what a frame costs and how far it is from the truth, on
 the same inputs. Written by `bench/report/run`, which builds and runs all of `bench/`.
 
 {about}

@@ -118,7 +118,7 @@ def printed_page(name, rows, root):
         "Equation and source": "\n\n".join(dict.fromkeys(c[1] for c in rows))
                                + f"\n\n```text\n{comment_of(header)}\n```",
         "Parameters": "\n".join(f"```cpp\n{text}\n```\n" for text in (interface_of(code), *settings_of(header, name))),
-        "Result and statuses": "What the declaration above says; a policy gives the result of the method that takes it.\n\n"
+        "Result and statuses": "What the declaration above says; a part gives the result of the method that takes it.\n\n"
                                + "\n".join(f"```cpp\n{text}\n```\n" for text in results_of(header)),
         "Cost": "Its rows in [speed against error](../../docs/speed_and_error.md), where it is timed; it is no "
                 "part of a default frame.",
