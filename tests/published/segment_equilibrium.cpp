@@ -189,6 +189,7 @@ TEST_CASE("published six-axis force: what it refuses", "[published]") {
   CHECK(test::begins_with(said({.base_radius_mm = 0}), owner + "base_radius_mm = 0"));
   CHECK(test::begins_with(said({.delta_z_mm = 0}), owner + "delta_z_mm = 0"));
   CHECK(test::begins_with(said({.contours = 1}), owner + "contours = 1"));
+  CHECK(test::begins_with(said({.step_mm = 1e-30}), owner + "step_mm = 1e-30"));
   CHECK(test::begins_with(said({.step_mm = 0}), owner + "step_mm = 0"));
   CHECK(test::begins_with(said({.inside_mm = -1}), owner + "inside_mm = -1"));
 }

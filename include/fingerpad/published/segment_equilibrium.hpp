@@ -46,19 +46,20 @@ struct SegmentEquilibriumOptions {
   S delta_z_mm = S(0.2);         ///< height between contour lines, > 0
   Index contours = 70;           ///< in [2, 1000]; the last part of a longer line takes the rest
   int passes = 5;                ///< in [1, 100]
-  S step_mm = S(0.1);            ///< along a line, > 0
+  S step_mm = S(0.1);            ///< along a line, in [radius / 10000, radius]
   S inside_mm = S(1);  ///< the inclination of the object is read this far inside the contact, >= 0
 };
 
 /// The refusal of the first value that is out of range; "" if all are good.
 template <scalar S>
 std::string check(const SegmentEquilibriumOptions<S>& o) {
+  const double radius = static_cast<double>(value(o.base_radius_mm));
   return fingerpad::check("published::SegmentEquilibriumOptions",
                           {{"base_radius_mm", o.base_radius_mm, positive},
                            {"delta_z_mm", o.delta_z_mm, positive},
                            {"contours", o.contours, within(2, 1000)},
                            {"passes", o.passes, within(1, 100)},
-                           {"step_mm", o.step_mm, positive},
+                           {"step_mm", o.step_mm, within(radius / 10000, radius)},
                            {"inside_mm", o.inside_mm, not_negative}});
 }
 
