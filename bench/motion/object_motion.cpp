@@ -15,7 +15,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene_motion.hpp"
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "support/pad.hpp"
 #include "support/rolling.hpp"

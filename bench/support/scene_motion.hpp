@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bench/support/run.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/motion/spatial_dots.hpp"
 #include "scene_frames.hpp"
 #include "support/stick_scene.hpp"
 

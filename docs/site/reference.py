@@ -10,9 +10,9 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 ROOMS = {  # in the order in which a frame goes through them
-    "pipeline": "Whole sensors", "depth": "Depth", "contact": "Contact", "motion": "Motion",
-    "slip": "Slip", "gel": "Gels", "force": "Force", "foam": "Foam", "calibrate": "Calibration",
-    "published": "As published", "optics": "Optics", "sim": "Test signals", "adapt": "Adapters",
+    "pipeline": "Whole sensors", "depth": "Depth", "contact": "Contact", "dots": "Dots",
+    "motion": "Motion", "slip": "Slip", "gel": "Gels", "force": "Force", "foam": "Foam",
+    "calibrate": "Calibration", "published": "As published", "optics": "Optics", "sim": "Test signals", "adapt": "Adapters",
     "image": "Pixel kernels", "math": "Mathematics", "core": "Vocabulary",
 }
 

@@ -11,7 +11,8 @@
 #include <string>
 
 #include "calibrate/recordings.hpp"
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/number_table.hpp"

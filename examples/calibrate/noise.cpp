@@ -7,9 +7,10 @@
 
 #include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 #include "replay/foam/recording.hpp"
 #include "replay/io/failure.hpp"
 

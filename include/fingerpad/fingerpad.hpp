@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Everything but what brings OpenCV or xtensor with it (adapt/, gel/gel_contact.hpp). What needs
-// Eigen is here where Eigen is found: the six-axis force, the whole fingertip, fits of forces.
+// Everything but what brings OpenCV or xtensor with it (adapt/, dots/dot_finder.hpp,
+// gel/gel_contact.hpp). What needs Eigen is here where Eigen is found: the six-axis force, the
+// whole fingertip, fits of forces.
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
@@ -22,6 +23,7 @@
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/depth/sampling.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/taxels.hpp"

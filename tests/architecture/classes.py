@@ -19,7 +19,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOMS = ["depth", "contact", "motion", "slip", "gel", "force", "foam", "calibrate", "pipeline", "sim", "adapt"]
+ROOMS = ["depth", "contact", "dots", "motion", "slip", "gel", "force", "foam", "calibrate", "pipeline", "sim", "adapt"]
 CLASS = re.compile(r"^class (\w+)\b[^;]*\{", re.MULTILINE)
 FIELD = re.compile(r"^  (?!using |static |friend )(\w[\w:<>, ]*) \w+(?: = [^;]*)?;(.*)$")
 VALUE = re.compile(r"^  ()(?!ok,|none,)\w+(?: = \w+)?,(.*)$")  # these need no comment

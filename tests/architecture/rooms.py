@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 VOCABULARY = ["core", "math", "optics", "image", "membrane"]  # each may include those before it
-SUBJECTS = ["depth", "contact", "motion", "slip", "gel", "force", "foam"]
+SUBJECTS = ["depth", "contact", "dots", "motion", "slip", "gel", "force", "foam"]
 ABOVE = {  # folders above the subjects, and what else they may include
     "calibrate": [],
     "sim": [],

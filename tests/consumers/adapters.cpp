@@ -4,10 +4,10 @@
 // a contact in an image without any.
 #include <vector>
 
-#include "fingerpad/adapt/dot_finder.hpp"
 #include "fingerpad/adapt/mdspan.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #if __has_include(<xtensor/containers/xarray.hpp>)
 #include <xtensor/containers/xarray.hpp>

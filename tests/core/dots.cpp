@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/adapt/dot_tracker.hpp"
+#include "fingerpad/dots/dot_tracker.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fingerpad/contact/surface.hpp"
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 

@@ -3,11 +3,12 @@
 // Dot finder and tracker from any picture and any spots: a dot is finite and in its place, or NaN;
 // what is counted is what is there; a copied state gives the same bits.
 // with: -lopencv_core -lopencv_imgproc
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 
 #include <cstdint>
 #include <vector>
 
+#include "fingerpad/adapt/opencv.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;

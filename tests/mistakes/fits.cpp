@@ -14,10 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
 #include "support/pad.hpp"

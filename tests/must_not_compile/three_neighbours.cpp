@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Dots have 4 or 8 neighbours.
 // first error: a dot has 4 or 8 neighbours: for_each_neighbour<4> or for_each_neighbour<8>
-#include "fingerpad/adapt/dot_tracker.hpp"
+#include "fingerpad/dots/dot_tracker.hpp"
 #include "support/foreign_image.hpp"
 
 const test::ForeignImage<fingerpad::Point2<double>> dots(2, 2);

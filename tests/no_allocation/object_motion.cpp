@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/motion/object_motion.hpp"
 
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "no_allocation/count.hpp"
 #include "support/catch.hpp"

@@ -10,7 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 #include "replay/dots/grid.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/io/sensor.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 
 namespace replay {
 namespace {

@@ -17,7 +17,7 @@
 namespace fingerpad {
 inline namespace v0 {
 
-namespace detail::motion {
+namespace detail::dots {
 
 /// Depth between pixel centers by bilinear interpolation; NaN outside of the map and where a pixel
 /// with a weight is missing.
@@ -62,7 +62,7 @@ P point_from(const Point3<S>& p) {
   }
   return out;
 }
-}  // namespace detail::motion
+}  // namespace detail::dots
 
 /// Dots of a frame in space, in mm, from their positions in the image (px) and the depth map (mm,
 /// along each pixel's ray). NaN where a dot was not found or has no depth. Returns how many
@@ -85,10 +85,10 @@ Index spatial_dots(const Camera<S>& camera,
       using Traits = point_traits<cell_t<Dots>>;
       const S row = S(Traits::y(p));
       const S col = S(Traits::x(p));
-      const S l = detail::motion::depth_between_pixels(depth, row, col);
+      const S l = detail::dots::depth_between_pixels(depth, row, col);
       const bool known = is_depth(l);
-      to(i, j) = detail::motion::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
-                                                               : detail::missing_point<S>());
+      to(i, j) = detail::dots::point_from<cell_t<Out>>(known ? point_at(camera, row, col, l)
+                                                             : detail::missing_point<S>());
       count += known ? 1 : 0;
     }
   }

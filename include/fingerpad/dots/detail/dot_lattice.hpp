@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_table.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -13,8 +13,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_patch.hpp"
-#include "fingerpad/adapt/detail/dot_table.hpp"
+#include "fingerpad/dots/detail/dot_patch.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_table.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

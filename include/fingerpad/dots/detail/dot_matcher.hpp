@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_table.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -11,11 +11,11 @@
 #include <limits>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_matcher.hpp"
-#include "fingerpad/adapt/detail/dot_table.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/dots/detail/dot_matcher.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

@@ -3,7 +3,7 @@
 // Finding, naming and tracking of dots in noisy 8-bit frames of 640 x 480 pixels with three
 // channels. A drawn print shifts back and forth by a fifth of a pitch. The error is the distance of
 // each dot from its drawn position; a dot with another dot's name counts as lost.
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 
 #include <memory>
 #include <opencv2/calib3d.hpp>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/support/run.hpp"
+#include "fingerpad/adapt/opencv.hpp"
 #include "support/printed_dots.hpp"
 
 using namespace fingerpad;

@@ -5,6 +5,7 @@
 // frame. Unknown properties of the print (size, spacing, dark or bright, number of rows) are found
 // in a frame of the free pad. Needs OpenCV (core, imgproc): target fingerpad::dot_finder.
 //
+//   #include "fingerpad/adapt/opencv.hpp"            // makes cv::Mat_ a grid
 //   DotFinder finder(free_frame);                    // any pad with a grid of dots
 //   auto state = finder.start();
 //   cv::Mat_<cv::Vec2d> dots(finder.rows(), finder.cols());
@@ -18,10 +19,9 @@
 #include <utility>
 #include <vector>
 
-#include "fingerpad/adapt/detail/dot_lattice.hpp"
-#include "fingerpad/adapt/detail/dot_spots.hpp"
-#include "fingerpad/adapt/dot_tracker.hpp"
-#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots/detail/dot_lattice.hpp"
+#include "fingerpad/dots/detail/dot_spots.hpp"
+#include "fingerpad/dots/dot_tracker.hpp"
 
 namespace fingerpad {
 inline namespace v0 {

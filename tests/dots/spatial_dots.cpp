@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/motion/spatial_dots.hpp"
+#include "fingerpad/dots/spatial_dots.hpp"
 
 #include <cmath>
 #include <opencv2/core.hpp>

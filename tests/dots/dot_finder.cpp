@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "fingerpad/adapt/dot_finder.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "fingerpad/adapt/opencv.hpp"
 #include "support/catch.hpp"
 #include "support/printed_dots.hpp"
 
