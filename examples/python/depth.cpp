@@ -93,7 +93,9 @@ void bind_depth(py::module_& module) {
       .def_readwrite("pitch_mm", &Camera<double>::pitch_mm)
       .def_readwrite("plate_thickness_mm", &Camera<double>::plate_thickness_mm)
       .def_readwrite("plate_index", &Camera<double>::plate_index)
-      .def_readwrite("pixel_aspect", &Camera<double>::pixel_aspect);
+      .def_readwrite("pixel_aspect", &Camera<double>::pixel_aspect)
+      .def_readwrite("distortion_k1", &Camera<double>::distortion_k1)
+      .def_readwrite("distortion_k2", &Camera<double>::distortion_k2);
   bind_options<Absorption<double>>(module, "Absorption", "The fluid; see depth/absorption.hpp.")
       .def_readwrite("c_red_per_mm", &Absorption<double>::c_red_per_mm)
       .def_readwrite("c_green_per_mm", &Absorption<double>::c_green_per_mm)

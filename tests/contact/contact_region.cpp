@@ -536,6 +536,13 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
   camera.center_y_px = -1e300;
   CHECK(begins_with(refusal([&] { ContactRegion<> region(camera, 60, 60); }),
                     "ContactRegion: camera: corner of the image, mm = "));
+  camera = {};
+  camera.center_y_px = 0;  // one of the other corners alone
+  camera.center_x_px = 59;
+  camera.plate_distance_mm = 10;
+  camera.distortion_k1 = -0.6;
+  CHECK(begins_with(refusal([&] { ContactRegion<> region(camera, 60, 60); }),
+                    "ContactRegion: camera: corner of the image, mm = nan"));
   // a pixel without neighbours on both sides has no area
   for (const Index one : {0, 1}) {
     CHECK(begins_with(refusal([&] { ContactRegion<> region({}, one, 60); }),

@@ -157,6 +157,8 @@ TEST_CASE("a camera that cannot be is refused", "[expects][optics]") {
   check_field(&C::center_y_px, "Camera", "center_y_px", never, {-1e4, 0, 1e4});
   check_field(&C::pitch_mm, "Camera", "pitch_mm", {missing, infinity, 0, -0.1}, {1e-6, 1});
   check_field(&C::pixel_aspect, "Camera", "pixel_aspect", {missing, infinity, 0, -1}, {0.9, 1.1});
+  check_field(&C::distortion_k1, "Camera", "distortion_k1", never, {-0.2, 0, 0.3});
+  check_field(&C::distortion_k2, "Camera", "distortion_k2", never, {-0.1, 0, 0.1});
   check_field(&C::plate_thickness_mm, "Camera", "plate_thickness_mm",
               {missing, infinity, -1e-9, 50, 51}, {0, 49.999});
   check_field(&C::plate_index, "Camera", "plate_index", {missing, infinity, 0, 0.999}, {1, 1.49});

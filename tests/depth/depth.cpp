@@ -176,6 +176,11 @@ TEST_CASE("a reference that determines nothing is refused", "[reference]") {
   CHECK(fit(depth) == "accepted");
   CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, test::nan)), StartsWith(refused + "0"));
   CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 0)), StartsWith("fit_reference: deepest"));
+  Pad folded;
+  folded.camera.distortion_k1 = -4;
+  CHECK_THAT(
+      refusal([&] { (void)folded.reference<float>(); }),
+      StartsWith("fit_reference: camera.distortion_k1 = -4, must be a distortion that does"));
   CHECK_THAT(fit(Image<double>(pad.rows, pad.cols, 100)), StartsWith("fit_reference: share"));
 
   // Four pixels at one radius do not determine g as a function of the radius.
@@ -1193,11 +1198,15 @@ TEST_CASE("a pixel without a gain of red is not used", "[depth]") {
   }
 }
 
-TEMPLATE_TEST_CASE("pixels that are higher or lower than wide", "[depth]", float, double) {
+TEMPLATE_TEST_CASE("pixels that are higher or lower than wide, and a lens",
+                   "[depth]",
+                   float,
+                   double) {
   using S = TestType;
   Pad pad;
   const auto [aspect, cols] = GENERATE(std::pair(0.5, 56), std::pair(1.3, 56), std::pair(2.0, 16));
   pad.camera.pixel_aspect = aspect;
+  pad.camera.distortion_k1 = GENERATE(0.0, -0.06);
   pad.rows = static_cast<Index>(48 / aspect);
   pad.cols = cols;  // of the last, only a strip of the pad is in the image
   pad.camera.center_x_px = static_cast<double>(pad.cols - 1) / 2;

@@ -357,6 +357,103 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
   });
 }
 
+namespace {
+/// A lens that distorts, but folds nothing back within 35 degrees.
+Camera<double> any_lens() {
+  auto camera = any_camera();
+  camera.distortion_k1 = test::uniform(-0.2, 0.3);
+  camera.distortion_k2 = test::uniform(-0.08, 0.1);
+  return camera;
+}
+Point2<double> any_direction(double most = 0.7) {
+  const double t = test::uniform(0, most), angle = test::uniform(-4, 4);
+  return {t * std::cos(angle), t * std::sin(angle)};
+}
+}  // namespace
+
+TEST_CASE("a lens distorts as in OpenCV", "[optics]") {
+  rc::prop("each direction by 1 + k1 t^2 + k2 t^4", [] {
+    const auto camera = any_lens();
+    const auto d = any_direction();
+    const double s = d.x * d.x + d.y * d.y;
+    const double factor = 1 + camera.distortion_k1 * s + camera.distortion_k2 * s * s;
+    const auto pixel = pixel_at_tangents(camera, d);
+    const double px = factor / tangent_per_px(camera);
+    RC_ASSERT(near(pixel.x, camera.center_x_px + d.x * px, 1000 + std::abs(d.x * px), 8));
+    RC_ASSERT(near(pixel.y, camera.center_y_px + d.y * px / camera.pixel_aspect,
+                   1000 + std::abs(d.y * px), 8));
+  });
+  rc::prop("and its derivatives by k1, k2 and the pixel are those of differences", [] {
+    auto camera = any_lens();
+    camera.distortion_k1 = test::whole(0, 3) == 0 ? 0 : camera.distortion_k1;
+    camera.distortion_k2 = test::whole(0, 3) == 0 ? 0 : camera.distortion_k2;
+    const auto pixel = pixel_at_tangents(camera, any_direction(0.6));
+    const auto agree = [&](int which, double x) {
+      const auto f = [&]<class S>(const S& at) {
+        auto c = as<S>(camera);
+        (which == 0 ? c.distortion_k1 : which == 1 ? c.distortion_k2 : c.center_x_px) = at;
+        const auto there = point_at(c, S(pixel.y), S(pixel.x), S(3));
+        const auto back = pixel_of(c, Point3<S>{S(4), S(-3), S(2)});
+        return S(there.x - there.y + S(camera.pitch_mm) * (back.x + back.y));
+      };
+      const double by_dual = test::slope_by_dual(f, x);
+      const double by_difference = test::slope_by_difference(f, x, 1e-6 * (1 + std::abs(x)));
+      RC_ASSERT(std::abs(by_dual - by_difference) <= 1e-5 * (1 + std::abs(by_difference)));
+    };
+    if (std::hypot(5, 4) / camera.plate_distance_mm < 0.6) {
+      agree(0, camera.distortion_k1);
+      agree(1, camera.distortion_k2);
+      agree(2, camera.center_x_px);
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE("a distorted pixel is found again, to roundoff",
+                   "[optics]",
+                   float,
+                   double,
+                   long double,
+                   Digits50) {
+  using S = TestType;
+  rc::prop("by its direction and by its point", [] {
+    const auto lens = any_lens();
+    const auto camera = as<S>(lens);
+    const auto d = any_direction();
+    const Point2<S> direction = {S(d.x), S(d.y)};
+    const auto pixel = pixel_at_tangents(camera, direction);
+    const auto back = tangents_of_pixel(camera, pixel.y, pixel.x);
+    // a pixel is known to epsilon of its number, not of its distance from the center
+    const S scale = S(1 + 1000 * tangent_per_px(lens));
+    RC_ASSERT(near<S>(back.x, direction.x, scale, 64));
+    RC_ASSERT(near<S>(back.y, direction.y, scale, 64));
+    const auto again = pixel_of(camera, point_at(camera, pixel.y, pixel.x, S(7)));
+    const S far = S(1000 + 1 / tangent_per_px(lens));
+    RC_ASSERT(near<S>(again.x, pixel.x, far, 64));
+    RC_ASSERT(near<S>(again.y, pixel.y, far, 64));
+  });
+}
+
+TEST_CASE("where a distortion folds back, nothing is seen", "[optics]") {
+  Camera<double> camera;
+  const auto k = GENERATE(std::pair(-0.5, 0.0), std::pair(-0.5, 0.1), std::pair(0.5, -0.3));
+  const double k1 = camera.distortion_k1 = k.first, k2 = camera.distortion_k2 = k.second;
+  double fold = 0;  // the first tangent at which the distorted one falls
+  const auto distorted = [&](double t) { return t + k1 * t * t * t + k2 * std::pow(t, 5); };
+  while (distorted(fold + 1e-4) > distorted(fold)) {
+    fold += 1e-4;
+  }
+  const double per_px = tangent_per_px(camera), row = camera.center_y_px;
+  const auto seen = [&](double d) {
+    return tangents_of_pixel(camera, row, camera.center_x_px + d / per_px).x;
+  };
+  CHECK(seen(distorted(0.9 * fold)) == Approx(0.9 * fold));
+  for (const double more : {1.001, 1.1, 2.0, 10.0, 1e3, 1e9}) {
+    CAPTURE(k1, k2, more);
+    CHECK_FALSE(is_finite(seen(more * distorted(fold))));
+    CHECK_FALSE(is_finite(pixel_at_tangents(camera, {more * (fold + 1e-3), 0.0}).x));
+  }
+}
+
 TEST_CASE("cameras are set for 640 x 480 pixels until they are told otherwise", "[optics]") {
   CHECK(Camera<>().center_x_px == 319.5);
   CHECK(Camera<>().center_y_px == 239.5);
@@ -371,4 +468,6 @@ TEST_CASE("the default camera looks through water and a thin plate of acrylic", 
   CHECK(camera.plate_thickness_mm == 0);
   CHECK(camera.plate_index == 1.49);
   CHECK(camera.pixel_aspect == 1);
+  CHECK(camera.distortion_k1 == 0);
+  CHECK(camera.distortion_k2 == 0);
 }

@@ -47,8 +47,7 @@ inline Camera<double> any_camera() {
 
 template <class S>
 Camera<S> as(const Camera<double>& c) {
-  return {S(c.plate_distance_mm), S(c.refractive_index),   S(c.center_x_px), S(c.center_y_px),
-          S(c.pitch_mm),          S(c.plate_thickness_mm), S(c.plate_index), S(c.pixel_aspect)};
+  return fingerpad::cast<S>(c);
 }
 
 /// tan(phi_air), up to 75 degrees.

@@ -120,7 +120,8 @@ class ContactRegion {
                                           static_cast<double>(j)));
       }
     }
-    for (const auto& corner : {point(0, 0, 0), point(rows - 1, cols - 1, 0)}) {
+    for (const auto& corner : {point(0, 0, 0), point(rows - 1, 0, 0), point(0, cols - 1, 0),
+                               point(rows - 1, cols - 1, 0)}) {
       expects(is_plausible(norm(corner)), "ContactRegion", "camera: corner of the image, mm",
               norm(corner), "less than a million from the axis");
     }

@@ -278,6 +278,13 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   reference.rows = depths.rows();
   reference.cols = depths.cols();
   expects_grid_size("fit_reference", reference.rows, reference.cols);
+  for (const Index k : {0, 1, 2, 3}) {
+    const auto corner =
+        detail::ray_of(camera, k / 2 * (reference.rows - 1), k % 2 * (reference.cols - 1));
+    expects(is_finite(corner.tan_air), "fit_reference", "camera.distortion_k1",
+            static_cast<double>(value(camera.distortion_k1)),
+            "a distortion that does not fold back within the image");
+  }
   const auto max_depth_mm = static_cast<double>(value(fluid.max_depth_mm));
   const LazyView plain_depth(depths.rows(), depths.cols(), [&](Index i, Index j) {
     return static_cast<double>(value(static_cast<C>(depths(i, j))));

@@ -16,6 +16,7 @@
 //          v z    `-_     sin(phi_air) = n sin(phi_fluid)
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
@@ -24,8 +25,10 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Camera and plate. The pixel's direction is that of a pinhole: tan(phi_air) grows linearly with
-/// the distance from the center pixel.
+/// Camera and plate. Without distortion a pixel's direction is that of a pinhole: tan(phi_air) = t
+/// grows linearly with the distance from the center pixel. A lens shows the direction t where a
+/// pinhole would show t (1 + k1 t^2 + k2 t^4), as in OpenCV. Where that falls with t the polynomial
+/// describes no lens: directions from there on have no pixel, and pixels beyond no ray (NaN).
 template <scalar S = double>
 struct Camera {
   S plate_distance_mm = S(50);           ///< camera center to the plate's inner face, > 0
@@ -36,6 +39,8 @@ struct Camera {
   S plate_thickness_mm = S(0);  ///< included in plate_distance_mm; 0 as in the papers
   S plate_index = S(149) / S(100);  ///< of the plate (acrylic) relative to air, >= 1
   S pixel_aspect = S(1);            ///< height of a pixel over its width, > 0
+  S distortion_k1 = S(0);           ///< radial distortion of the lens, < 0: barrel
+  S distortion_k2 = S(0);           ///< its next coefficient
 };
 
 /// Says which value is out of range; "" if none is.
@@ -51,7 +56,9 @@ std::string check(const Camera<S>& c) {
                            c.plate_thickness_mm,
                            {.min = 0, .max = distance_mm, .below_max = true}},
                           {"plate_index", c.plate_index, at_least(1)},
-                          {"pixel_aspect", c.pixel_aspect, positive}});
+                          {"pixel_aspect", c.pixel_aspect, positive},
+                          {"distortion_k1", c.distortion_k1, finite_number},
+                          {"distortion_k2", c.distortion_k2, finite_number}});
 }
 
 namespace detail {
@@ -68,7 +75,8 @@ constexpr bool is_depth(const S& depth_mm) {
 template <scalar To, scalar From>
 Camera<To> cast(const Camera<From>& c) {
   return {To(c.plate_distance_mm), To(c.refractive_index),   To(c.center_x_px), To(c.center_y_px),
-          To(c.pitch_mm),          To(c.plate_thickness_mm), To(c.plate_index), To(c.pixel_aspect)};
+          To(c.pitch_mm),          To(c.plate_thickness_mm), To(c.plate_index), To(c.pixel_aspect),
+          To(c.distortion_k1),     To(c.distortion_k2)};
 }
 
 namespace detail {
@@ -106,7 +114,7 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
   return {t, t * ratio, S(1) / inv_cos_fluid, t * (in_air + in_plate), S(1) + inv_cos_fluid};
 }
 
-/// Tangent per pixel of distance from the center pixel, along a row.
+/// Tangent per pixel of distance from the center pixel, along a row, near the axis.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
   const S paraxial = camera.plate_distance_mm - camera.plate_thickness_mm +
@@ -121,19 +129,63 @@ S growth_per_mm(const Camera<S>& camera) {
          detail::tangent_ratio(S(0), camera.refractive_index);
 }
 
+namespace detail {
+/// Where a pinhole would see the pixel at (row, col): tangents along x and along y.
+template <scalar S>
+Point2<S> distorted_tangents(const Camera<S>& camera, const S& row, const S& col) {
+  const S scale = tangent_per_px(camera);
+  return {(col - camera.center_x_px) * scale,
+          (row - camera.center_y_px) * camera.pixel_aspect * scale};
+}
+
+/// 1 + k1 t^2 + k2 t^4; NaN if t (1 + k1 t^2 + k2 t^4) does not grow all the way to t.
+template <scalar S>
+S distortion(const Camera<S>& camera, const S& t_sq) {
+  const auto s = value(t_sq), k1 = value(camera.distortion_k1), k2 = value(camera.distortion_k2);
+  const bool grows_here = 1 + s * (3 * k1 + s * 5 * k2) > 0;
+  const bool fell_before = k1 < 0 && 10 * k2 * s > -3 * k1 && 9 * k1 * k1 >= 20 * k2;
+  return grows_here && !fell_before
+             ? S(1) + t_sq * (camera.distortion_k1 + t_sq * camera.distortion_k2)
+             : not_a_number<S>();
+}
+
+/// q = t / d, of the square of the distorted tangent d = t (1 + k1 t^2 + k2 t^4), by Newton's
+/// method from q = 1; exactly 1 without distortion. NaN where no t is seen.
+template <scalar S>
+S undistortion(const Camera<S>& camera, const S& d_sq) {
+  const S a = camera.distortion_k1 * d_sq, b = camera.distortion_k2 * d_sq * d_sq;
+  S q = S(1);
+  if (std::is_floating_point_v<S> && value(a) == 0 && value(b) == 0) {  // no derivatives to find
+    return q;
+  }
+  bool is_near = false;
+  for (int step = 0; step < 64; ++step) {
+    const S q_sq = q * q;
+    const S slope = S(1) + q_sq * (S(3) * a + q_sq * S(5) * b);
+    const S miss = S(1) - q * (S(1) + q_sq * (a + q_sq * b));
+    const S change = value(slope) > 0 ? miss / slope : q / S(-4);  // back from beyond the fold
+    q = q + change;
+    if (is_near) {  // the step that doubles the digits of q, and of its derivatives
+      return is_finite(distortion(camera, d_sq * q * q)) ? q : not_a_number<S>();
+    }
+    is_near = value(change * change) <= epsilon<S>() * value(q * q);
+  }
+  return not_a_number<S>();
+}
+}  // namespace detail
+
 /// The direction in air of the pixel at (row, col), which may lie between pixel centers: tangents
 /// of its angles to the axis along x and along y. With pixel_at_tangents, the only place where
 /// pixels become rays.
 template <scalar S>
 Point2<S> tangents_of_pixel(const Camera<S>& camera, const S& row, const S& col) {
-  const S scale = tangent_per_px(camera);
-  return {(col - camera.center_x_px) * scale,
-          (row - camera.center_y_px) * camera.pixel_aspect * scale};
+  const Point2<S> distorted = detail::distorted_tangents(camera, row, col);
+  return detail::undistortion(camera, squared_norm(distorted)) * distorted;
 }
 /// The pixel that looks in this direction; inverse of tangents_of_pixel.
 template <scalar S>
 Point2<S> pixel_at_tangents(const Camera<S>& camera, const Point2<S>& tangents) {
-  const S px = S(1) / tangent_per_px(camera);
+  const S px = detail::distortion(camera, squared_norm(tangents)) / tangent_per_px(camera);
   return {camera.center_x_px + tangents.x * px,
           camera.center_y_px + tangents.y * px / camera.pixel_aspect};
 }

@@ -84,7 +84,8 @@ class DepthPolynomial {
         u_root_per_row_(S(camera.pixel_aspect / radius_px)) {
     const double l_max = fluid.max_depth_mm;
     const auto pencil = [&](double u) {
-      const double tangent = radius_px * std::sqrt(u) * tangent_per_px(camera);
+      const double distorted = radius_px * std::sqrt(u) * tangent_per_px(camera);
+      const double tangent = distorted * undistortion(camera, distorted * distorted);
       return pencil_of(camera, ray_at_tangent(camera, tangent));
     };
     const auto scattered = [&](double s, double u) {

@@ -20,10 +20,12 @@ struct MmPerPx {
 };
 template <scalar S>
 MmPerPx<S> mm_per_px(const Camera<S>& camera, const S& row, const S& col) {
-  const S t_sq = squared_norm(tangents_of_pixel(camera, row, col));
+  const S distorted_sq = squared_norm(distorted_tangents(camera, row, col));
+  const S q = undistortion(camera, distorted_sq);
+  const S t_sq = distorted_sq * q * q;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S in_plate = camera.plate_thickness_mm * tangent_ratio(t_sq, camera.plate_index);
-  const S per_px = tangent_per_px(camera);
+  const S per_px = tangent_per_px(camera) * q;
   return {per_px * (in_air + in_plate), per_px * tangent_ratio(t_sq, camera.refractive_index)};
 }
 template <scalar S>
