@@ -8,16 +8,22 @@
 #include <cstdlib>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/published/contact_region.hpp"
+#include "no_allocation/count.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
+#include "support/generators.hpp"
+#include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
+#include "support/rotated.hpp"
 
 using namespace fingerpad;
 using test::Image;
@@ -461,4 +467,357 @@ TEST_CASE("rays of pixels pass through the points of point_at, with and without 
       }
     }
   }
+}
+
+// Properties for every membrane, with any pixels missing, and both means.
+
+using test::mirrored;
+using test::rotated;
+using test::transposed;
+
+namespace {
+
+/// A wavy membrane with holes, wide enough for whole SIMD vectors and a remainder.
+template <class S>
+Image<S> any_membrane() {
+  Image<S> depth(test::whole(1, 30), test::whole(1, 60));
+  const double bend = test::uniform(-0.02, 0.02), wave = test::uniform(0, 0.3);
+  const double phase = test::uniform(0, 6), slope = test::uniform(-1, 1);
+  test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
+  const double missing = test::whole(0, 2) == 0 ? 0 : test::uniform(0, 0.05);
+  for (Index i = 0; i < depth.rows(); ++i) {
+    for (Index j = 0; j < depth.cols(); ++j) {
+      const double x = static_cast<double>(j) / 8 - 3, y = static_cast<double>(i) / 8 - 2;
+      const double l = 9 + slope * x + bend * (x * x + y * y) + wave * std::sin(2 * x + y + phase);
+      depth(i, j) = random.uniform() < missing ? std::numeric_limits<S>::quiet_NaN() : S(l);
+    }
+  }
+  return depth;
+}
+
+CurvatureRing any_ring() {
+  return {test::uniform(1, 8), test::uniform(0.05, 1)};
+}
+
+/// Whether the same pixels are known and |a - b| is within a bound for numbers of order 1 per mm.
+template <class A, class B>
+bool close(const Image<A>& a, const Image<B>& b, double bound) {
+  for (std::size_t k = 0; k < a.cells.size(); ++k) {
+    const double x = static_cast<double>(a.cells[k]), y = static_cast<double>(b.cells[k]);
+    if (std::isnan(x) != std::isnan(y) ||
+        std::abs(x - y) > bound * (1 + std::abs(x) + std::abs(y))) {
+      return false;
+    }
+  }
+  return a.cells.size() == b.cells.size();
+}
+
+constexpr double rounding = 1e-9;  // of fits through few remaining sections, in double
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("curvature turns and scales with the membrane",
+                       "[curvature]",
+                       ((Mean Of), Of),
+                       Mean::clamped,
+                       Mean::plain) {
+  rc::prop("transposed, mirrored, rotated by 180 degrees", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    const Image<double> k = curvatures<Of>(depth, ring);
+    RC_ASSERT(close(curvatures<Of>(transposed(depth), ring), transposed(k), rounding));
+    RC_ASSERT(close(curvatures<Of>(mirrored(depth), ring), mirrored(k), rounding));
+    RC_ASSERT(close(curvatures<Of>(rotated(depth), ring), rotated(k), rounding));
+  });
+  rc::prop("moved along z, on the plate's own pitch", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    Image<double> moved = depth;
+    const double by = test::uniform(-5, 5);
+    for (double& l : moved.cells) {
+      l += by;
+    }
+    RC_ASSERT(close(curvatures<Of>(moved, ring), curvatures<Of>(depth, ring), rounding));
+  });
+  rc::prop("scaled with its pitch and its camera", [] {
+    const Image<double> depth = any_membrane<double>();
+    const CurvatureRing ring = any_ring();
+    const double scale = test::log_uniform(1e-3, 5), growth = test::uniform(1e-3, 0.03);
+    Image<double> scaled = depth;
+    for (double& l : scaled.cells) {
+      l *= scale;
+    }
+    Image<double> k = curvatures<Of>(scaled, ring, through(0.125 * scale, growth / scale));
+    for (double& c : k.cells) {
+      c *= scale;
+    }
+    RC_ASSERT(close(k, curvatures<Of>(depth, ring, through(0.125, growth)), rounding));
+  });
+}
+
+TEMPLATE_TEST_CASE_SIG("curvature is the same however it is computed",
+                       "[curvature]",
+                       ((Mean Of), Of),
+                       Mean::clamped,
+                       Mean::plain) {
+  rc::prop("by vectors or one by one", [] {
+    const Image<double> depth = any_membrane<double>();
+    CurvatureRing ring = any_ring();
+    Image<long double> slow(depth.rows(), depth.cols());
+    std::copy(depth.cells.begin(), depth.cells.end(), slow.cells.begin());
+    const Through camera = through(0.125, 0.015);
+    RC_ASSERT(
+        close(curvatures<Of>(depth, ring, camera), curvatures<Of>(slow, ring, camera), rounding));
+  });
+  rc::prop("in parts of the image, to the last bit", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    const Index rows = depth.rows(), cols = depth.cols();
+    CurvatureMap<> map(plate, rows, cols, ring);
+    Image<float> clamped(rows, cols), again(rows, cols), plain(rows, cols);
+    const auto all = map(depth, clamped);
+    RC_ASSERT(*all == std::count_if(clamped.cells.begin(), clamped.cells.end(),
+                                    [](float k) { return std::isnan(k); }));
+    map.mean(0, rows, 0, cols, plain);
+    Image<float> parts(rows, cols, 7.0F);
+    const Index row = test::whole(0, rows), col = test::whole(0, cols);
+    map.mean(row, rows, col, cols, parts);
+    RC_ASSERT(std::count(parts.cells.begin(), parts.cells.end(), 7.0F) >=
+              rows * cols - (rows - row) * (cols - col));
+    map.mean(row, rows, 0, col, parts);
+    map.mean(0, row, 0, cols, parts);
+    RC_ASSERT(test::same_bits(plain, parts));
+    RC_ASSERT(map(depth, again) == all);
+    RC_ASSERT(test::same_bits(clamped, again));
+  });
+}
+
+TEMPLATE_TEST_CASE_SIG("what is missing stays within its ring",
+                       "[curvature]",
+                       ((Mean Of), Of),
+                       Mean::clamped,
+                       Mean::plain) {
+  rc::prop("lost, infinite and absurd depths", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    Image<float> hole = depth;
+    const Index i = test::whole(0, depth.rows() - 1), j = test::whole(0, depth.cols() - 1);
+    const float infinity = std::numeric_limits<float>::infinity();
+    hole(i, j) = *rc::gen::element(std::nanf(""), -std::nanf(""), infinity, -infinity, 3e38F,
+                                   -3e38F, 1e-42F, 1e5F, -1e5F);
+    const Through camera = through(0.125, 0.015);
+    const Image<float> before = curvatures<Of>(depth, ring, camera);
+    const Image<float> after = curvatures<Of>(hole, ring, camera);
+    for (Index r = 0; r < depth.rows(); ++r) {
+      for (Index c = 0; c < depth.cols(); ++c) {
+        const double distance = std::hypot(static_cast<double>(r - i), static_cast<double>(c - j));
+        const bool far = distance > ring.radius_px + 0.71;
+        RC_ASSERT(!far || test::same_bits(before(r, c), after(r, c)));
+        RC_ASSERT(!std::isinf(after(r, c)));
+        RC_ASSERT(std::isfinite(hole(r, c)) || std::isnan(after(r, c)));
+      }
+    }
+  });
+}
+
+TEST_CASE("pixels are known where enough sections are complete", "[curvature]") {
+  rc::prop("counted one by one", [] {
+    const Image<float> depth = any_membrane<float>();
+    const CurvatureRing ring = any_ring();
+    const Image<float> k = curvatures<Mean::clamped>(depth, ring);
+    const auto offsets = detail::ring_offsets(ring.radius_px, 18);
+    const auto there = [&](Index r, Index c) {
+      return r >= 0 && r < depth.rows() && c >= 0 && c < depth.cols() && !std::isnan(depth(r, c));
+    };
+    for (Index i = 0; i < depth.rows(); ++i) {
+      for (Index j = 0; j < depth.cols(); ++j) {
+        double mean = 0, count = 0;
+        for (const detail::RingOffset& o : offsets) {
+          if (there(i, j) && there(i + o.row, j + o.col) && there(i - o.row, j - o.col)) {
+            const double radius = std::sqrt(o.distance_sq()) * plate.pitch_mm;
+            const auto at = [&](Index sign) {
+              return static_cast<double>(depth(i + sign * o.row, j + sign * o.col));
+            };
+            mean += (std::max)(0.0, section_curvature(radius, at(-1), at(0), at(1)));
+            count += 1;
+          }
+        }
+        const bool enough =
+            count >= (std::max)(1.0, std::ceil(ring.min_direction_share * 18 - 1e-9));
+        RC_ASSERT(std::isnan(k(i, j)) == !enough);
+        RC_ASSERT(!enough || std::abs(static_cast<double>(k(i, j)) - mean / count) <=
+                                 5e-6 + 5e-5 * mean / count);
+      }
+    }
+  });
+}
+
+TEST_CASE("means of one membrane are in order", "[curvature]") {
+  rc::prop("clamped >= plain", [] {
+    const Image<double> depth = any_membrane<double>();
+    CurvatureRing ring = any_ring();
+    const auto mean = curvatures<Mean::plain>(depth, ring);
+    const auto clamped = curvatures<Mean::clamped>(depth, ring);
+    for (std::size_t k = 0; k < depth.cells.size(); ++k) {
+      RC_ASSERT(!(clamped.cells[k] < mean.cells[k] - 1e-12) && !(clamped.cells[k] < 0));
+    }
+  });
+}
+
+// Curvature against 50 digits: the error of the arithmetic, with depths rounded to the type
+// first.
+
+using test::Digits50;
+
+namespace {
+
+template <class S>
+constexpr double bound_per_mm = 5e-6;
+template <>
+constexpr double bound_per_mm<double> = 1e-14;
+
+double any_curvature() {
+  const double size[] = {0.0, 1.5e-4, 0.05};
+  return (test::whole(0, 1) == 0 ? 1 : -1) * size[test::whole(0, 2)];
+}
+
+/// Error of a map at the center of a random patch of that curvature.
+template <bool Clamped, class S, class CameraType>
+double map_error(const CameraType& camera) {
+  const Index radius = test::whole(0, 7) == 0 ? 25 : 10;  // 50 digits of the larger ring take long
+  const Index size = 2 * radius + 1;
+  const double middle = test::uniform(5, 13), slope = test::uniform(0, 1.5);
+  const double turn = test::uniform(0, 7), bend_x = any_curvature();
+  const double bend_y = any_curvature();
+  Image<S> depth(size, size);
+  Image<Digits50> exact(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j < size; ++j) {
+      const double x = static_cast<double>(j - radius) * camera.pitch_mm;
+      const double y = static_cast<double>(i - radius) * camera.pitch_mm;
+      const double rise = slope * (x * std::cos(turn) + y * std::sin(turn));
+      depth(i, j) = static_cast<S>(middle + rise - (bend_x * x * x + bend_y * y * y) / 2);
+      exact(i, j) = Digits50(depth(i, j));
+    }
+  }
+  const CurvatureRing ring{static_cast<double>(radius)};
+  CurvatureMap<S> map(camera, size, size, ring);
+  CurvatureMap<Digits50> reference(camera, size, size, ring);
+  Image<S> k(size, size);
+  Image<Digits50> truth(size, size);
+  (void)map(depth, k);
+  (void)reference(exact, truth);
+  if (!Clamped) {
+    map.mean(0, size, 0, size, k);
+    reference.mean(0, size, 0, size, truth);
+  }
+  const Digits50 error = Digits50(k(radius, radius)) - truth(radius, radius);
+  return std::abs(static_cast<double>(error));
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a section's curvature follows 50 digits",
+                   "[curvature][figures]",
+                   float,
+                   double) {
+  using S = TestType;
+  rc::prop("whatever depth, slope and curvature", [] {
+    const S radius = static_cast<S>(test::whole(0, 1) == 0 ? 0.768 : 1.92);
+    const double r = static_cast<double>(radius);
+    const double center = test::uniform(5, 13), rise = r * test::uniform(-1.5, 1.5);
+    const double bend = any_curvature() * r * r / 2;
+    const S before = static_cast<S>(center - rise - bend);
+    const S middle = static_cast<S>(center);
+    const S after = static_cast<S>(center + rise - bend);
+    const Digits50 exact =
+        section_curvature(Digits50(radius), Digits50(before), Digits50(middle), Digits50(after));
+    const Digits50 error = Digits50(section_curvature(radius, before, middle, after)) - exact;
+    RC_ASSERT(std::abs(static_cast<double>(error)) <= bound_per_mm<S> / 100);
+  });
+}
+
+TEMPLATE_TEST_CASE("maps of curvature follow 50 digits", "[curvature][figures]", float, double) {
+  using S = TestType;
+  OrthographicCamera<double> plate;
+  plate.pitch_mm = 0.0768;
+  rc::prop("plain", [&] {
+    const double error = map_error<false, S>(plate);
+    RC_ASSERT(error <= bound_per_mm<S>);
+  });
+  rc::prop("clamped", [&] {
+    const double error = map_error<true, S>(plate);
+    RC_ASSERT(error <= bound_per_mm<S>);
+  });
+}
+
+TEMPLATE_TEST_CASE("through a camera too, up to the rounding of zeta",
+                   "[curvature][figures]",
+                   float,
+                   double) {
+  using S = TestType;
+  Camera<double> camera;
+  camera.pitch_mm = 0.0768;
+  rc::prop("clamped", [&] {
+    const double error = map_error<true, S>(camera);
+    RC_ASSERT(error <= 4 * bound_per_mm<S>);
+  });
+}
+
+TEST_CASE("fifty digits and dual numbers have curvature", "[curvature][figures]") {
+  using S = Digits50;
+  const S radius(0.768), before(9), center(9.5), after(9.25);
+  const S tiny("1e-16");
+  const auto by_center = [&](const auto& l) {
+    using T = std::decay_t<decltype(l)>;
+    return section_curvature(T(radius), T(before), l, T(after));
+  };
+  const S exact = test::slope_by_dual(by_center, center);
+  const S nearly = test::slope_by_difference(by_center, center, tiny);
+  CHECK(test::relative_error(nearly, exact) < S("1e-28"));
+  const S published = published::circle_center_curvature(radius, before, center, after);
+  const S menger = section_curvature(radius, before, center, after);
+  CHECK(test::relative_error(published, menger) < S("1e-47"));
+}
+
+TEST_CASE("the published circle loses digits where the membrane is nearly flat",
+          "[curvature][figures]") {
+  double published = 0, menger = 0;
+  int lost = 0;
+  test::Random random(7);
+  for (int k = 0; k < 20000; ++k) {
+    const float r = 0.768F;
+    const double center = random.uniform(5, 13), rise = 0.768 * random.uniform(-1.5, 1.5);
+    const double bend = 1.5e-4 * 0.768 * 0.768 / 2;
+    const float before = static_cast<float>(center - rise - bend);
+    const float middle = static_cast<float>(center);
+    const float after = static_cast<float>(center + rise - bend);
+    const double exact = section_curvature(static_cast<double>(r), static_cast<double>(before),
+                                           static_cast<double>(middle), static_cast<double>(after));
+    const double circle =
+        static_cast<double>(published::circle_center_curvature(r, before, middle, after));
+    lost += std::isnan(circle) ? 1 : 0;
+    published = std::isnan(circle) ? published : (std::max)(published, std::abs(circle - exact));
+    const double ours = static_cast<double>(section_curvature(r, before, middle, after));
+    menger = (std::max)(menger, std::abs(ours - exact));
+  }
+  CAPTURE(published, menger, lost);
+  CHECK(menger < 1e-10);
+  CHECK(published > 1e-7);
+}
+
+TEST_CASE("curvature: a frame allocates nothing") {
+  using namespace fingerpad;
+  std::vector<float> depth(48 * 64, 8.0F), out(48 * 64, 0.0F);
+  depth[1000] = std::nanf("");
+  const StridedView<float> view(depth.data(), 48, 64, 64), out_view(out.data(), 48, 64, 64);
+  CurvatureMap<> map({}, 48, 64, {5});
+  const long before = test::allocations();
+  for (int frame = 0; frame < 3; ++frame) {
+    (void)map(view, out_view);
+    map.mean(3, 20, 2, 50, out_view);
+  }
+  const long after = test::allocations();
+  CHECK(before > 0);
+  CHECK(after == before);
 }
