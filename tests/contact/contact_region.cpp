@@ -82,6 +82,26 @@ Index pixels_for(double radius_mm, Index ring_px, double pitch_mm = 0.08) {
 
 }  // namespace
 
+TEST_CASE("rays of pixels pass through the points of point_at, with and without a lens",
+          "[contact_region]") {
+  Camera<double> camera;
+  camera.plate_thickness_mm = 3;
+  camera.pixel_aspect = 1.1;
+  for (const double k1 : {0.0, -0.12, 0.1}) {
+    camera.distortion_k1 = k1;
+    camera.distortion_k2 = k1 / 5;
+    for (double row = 0; row < 480; row += 37) {
+      for (double col = 0; col < 640; col += 41) {
+        const auto ray = detail::mm_per_px(camera, row, col);
+        const auto point = point_at(camera, row, col, 7.0);
+        const double mm = ray.at_plate + ray.per_mm * 7;
+        CHECK((col - camera.center_x_px) * mm == Approx(point.x).epsilon(1e-13));
+        CHECK((row - camera.center_y_px) * 1.1 * mm == Approx(point.y).epsilon(1e-13));
+      }
+    }
+  }
+}
+
 TEST_CASE("a round contact is found where it is", "[contact_region]") {
   struct Case {
     double radius_mm;

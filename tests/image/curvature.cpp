@@ -13,7 +13,6 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "no_allocation/count.hpp"
 #include "support/cameras.hpp"
@@ -448,26 +447,6 @@ TEMPLATE_TEST_CASE("quick inverse roots keep their bounds", "", float, double) {
   CHECK(std::isnan(detail::inverse_sqrt(V{} + not_a_number<S>())[0]));
 }
 #endif
-
-TEST_CASE("rays of pixels pass through the points of point_at, with and without a lens",
-          "[curvature]") {
-  Camera<double> camera;
-  camera.plate_thickness_mm = 3;
-  camera.pixel_aspect = 1.1;
-  for (const double k1 : {0.0, -0.12, 0.1}) {
-    camera.distortion_k1 = k1;
-    camera.distortion_k2 = k1 / 5;
-    for (double row = 0; row < 480; row += 37) {
-      for (double col = 0; col < 640; col += 41) {
-        const auto ray = detail::mm_per_px(camera, row, col);
-        const auto point = point_at(camera, row, col, 7.0);
-        const double mm = ray.at_plate + ray.per_mm * 7;
-        CHECK((col - camera.center_x_px) * mm == Approx(point.x).epsilon(1e-13));
-        CHECK((row - camera.center_y_px) * 1.1 * mm == Approx(point.y).epsilon(1e-13));
-      }
-    }
-  }
-}
 
 // Properties for every membrane, with any pixels missing, and both means.
 
