@@ -94,8 +94,7 @@ void bind_slip(py::module_& module) {
           [](const Result& r) { return py::make_tuple(r.back.stick_ratio, r.back.reference_age); },
           "stick ratio and age of its reference, if the dots fall back")
       .def_readonly("stick_ratio", &Result::stick_ratio, "in [0, 1]; NaN if not known yet")
-      .def_readonly("ratio_sd", &Result::ratio_sd,
-                    "standard deviation of stick_ratio from the noise of the dots")
+      .def_readonly("ratio_sd", &Result::ratio_sd, "standard deviation of stick_ratio")
       .def_readonly("furthest", &Result::furthest)
       .def_readonly("reference_age", &Result::reference_age, "frames")
       .def_property_readonly(

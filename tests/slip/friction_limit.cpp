@@ -310,9 +310,9 @@ TEST_CASE("friction limit: which dots hold", "[friction_limit]") {
   SECTION("those whose state says so") {
     CHECK(without_force(ratio(0.5, 0.05)) == "1101");
   }
-  SECTION("none, unless the ratio is above a fifth by two standard deviations") {
-    CHECK(without_force(ratio(0.31, 0.05)) == "1101");
-    CHECK(without_force(ratio(0.29, 0.05)) == "0000");
+  SECTION("none, unless the ratio is above a fifth by its standard deviation") {
+    CHECK(without_force(ratio(0.26, 0.05)) == "1101");
+    CHECK(without_force(ratio(0.24, 0.05)) == "0000");
     CHECK(without_force(ratio(0.21, 0)) == "1101");
     CHECK(without_force(ratio(0.19, 0)) == "0000");
     CHECK(without_force(ratio(0.9, none)) == "0000");

@@ -126,7 +126,8 @@ class Step : public FingertipStep {
     stick.result = touch.stick;
     if (slides) {
       stick.result.status = fingerpad::StickStatus::updated;
-      stick.result.stick_ratio = stick.result.ratio_sd = 0;
+      stick.result.stick_ratio = 0;
+      stick.result.ratio_sd = 0.1;
     }
     stick.evidence = touch.slip.evidence;
     return dots;

@@ -165,7 +165,7 @@ struct [[nodiscard]] SlipResult {
   /// The dots move back toward their free positions: the load falls, or the object slides because
   /// friction has fallen.
   bool falls_back = false;
-  /// The dots' ratio is of this frame, and not above a fifth by two of its standard deviations.
+  /// The dots' ratio is of this frame, and not above a fifth by its standard deviation.
   bool in_doubt = false;
   S normal_n = not_a_number<S>();  ///< F_n; NaN where L is unknown
   S friction = not_a_number<S>();  ///< L
@@ -275,8 +275,8 @@ class FrictionLimit {
     SlipResult<S> result = (*this)(load, ratio, update);
     result.reference_age = age;
     result.falls_back = falls_back;
-    result.in_doubt = !falls_back && update == RatioUpdate::fresh &&
-                      !(S(least_stick) < ratio - S(2) * S(seen.ratio_sd));
+    result.in_doubt =
+        !falls_back && update == RatioUpdate::fresh && !(S(least_stick) < ratio - S(seen.ratio_sd));
     return result;
   }
 
