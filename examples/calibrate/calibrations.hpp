@@ -6,8 +6,11 @@
 // replay::Failure or fingerpad::parameter_error.
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calibrate/report.hpp"
+#include "replay/io/images.hpp"
 
 namespace calibrate {
 
@@ -22,6 +25,11 @@ struct DotPlate {
   double raised_mm = 0;  ///< 0: no plate_raised/; plate_distance_mm is used
   double plate_distance_mm = 50;
   double refractive_index = 1.33;  ///< of the fluid that is filled in later
+  bool is_srgb = false;            ///< how the camera writes light; else linear
+  std::string mosaic;              ///< of raw pictures, "rggb"; empty: colour pictures
+  replay::PictureFormat format() const {
+    return {is_srgb ? replay::srgb_response() : std::vector<double>{}, mosaic};
+  }
 };
 Outcome camera(const Path& recording, const DotPlate& plate);
 

@@ -7,6 +7,7 @@
 #include "calibrate/calibrations.hpp"
 #include "calibrate/report.hpp"
 #include "fingerpad/core/point.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 namespace calibrate {
 
@@ -15,23 +16,22 @@ struct PlateDot {
   fingerpad::Point2<double> plate_mm, picture_px;
 };
 
-/// Least-squares fit of an affine image of a square grid to a plate's dots.
-struct PlatePicture {
-  fingerpad::Point2<double> middle_px;
-  double px_per_mm = 0;
-  double anisotropy = 0;  ///< ratio of largest to smallest px per mm, minus 1
+/// The camera that explains both pictures of a target best: pitch, distance, center and, where they
+/// are beyond three standard deviations, the pixels' aspect and k1.
+struct CameraFit {
+  fingerpad::Camera<double> camera;  ///< of air: the refractive index is not its own
   double residual_px = 0;
-  double middle_sd_px = 0, px_per_mm_sd = 0;
+  /// NaN for what was not fitted.
+  double pitch_sd_mm = 0, aspect_sd = 0, center_sd_px = 0, distance_sd_mm = 0, k1_sd = 0;
+  double moved_mm = 0;  ///< along the plate, when the target was raised
   Plot plot{"distance from the middle of the plate [mm]", "distance in the image [px]", {}};
 };
-PlatePicture fit_plate(const std::vector<PlateDot>& dots);
-
-/// Distance from the entrance pupil to the plate, from two pictures; the plate is raised between
-/// them by `raised_mm`.
-struct PlateDistance {
-  double mm = 0, sd_mm = 0;
-};
-PlateDistance plate_distance(const PlatePicture& low, const PlatePicture& high, double raised_mm);
+/// `low` lies on the plate with its center dot on the axis, `high` is raised by raised_mm > 0 and
+/// may be shifted and turned. If `high` is empty, the distance is the one given. Nine dots or more.
+CameraFit fit_camera(const std::vector<PlateDot>& low,
+                     const std::vector<PlateDot>& high,
+                     double raised_mm,
+                     double plate_distance_mm);
 
 /// A cap fitted to touches. The base is NaN if the touches lie on no cap over the plate.
 struct TouchedCap {

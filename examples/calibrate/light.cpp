@@ -48,9 +48,10 @@ KnownFrames read_known(const Path& recording,
                        const Path& sensor_file,
                        const std::vector<std::string>& sections) {
   KnownFrames known{known_sensor(sensor_file, sections), {}, {}, {}, {}};
-  known.reference = replay::read_colour_image(recording / known.sensor.reference_frame);
+  known.reference =
+      replay::read_colour_image(recording / known.sensor.reference_frame, known.sensor.pictures);
   known.free_mm = replay::read_depth_image(recording / known.sensor.reference_depth);
-  known.frames = read_pictures(recording / "frames");
+  known.frames = read_pictures(recording / "frames", known.sensor.pictures);
   if (known.frames.front().size() != known.reference.size() ||
       known.free_mm.size() != known.reference.size()) {
     replay::fail(recording, "the frames, the reference and its depth must have the same size");
@@ -227,9 +228,10 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
 Outcome contact(const Path& recording, const Path& sensor_file) {
   const replay::Sensor sensor =
       known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
-  const cv::Mat reference = replay::read_colour_image(recording / sensor.reference_frame);
+  const cv::Mat reference =
+      replay::read_colour_image(recording / sensor.reference_frame, sensor.pictures);
   const DepthMap free_mm = replay::read_depth_image(recording / sensor.reference_depth);
-  const std::vector<cv::Mat> frames = read_pictures(recording / "free");
+  const std::vector<cv::Mat> frames = read_pictures(recording / "free", sensor.pictures);
   DepthMeter meter(sensor, reference, free_mm);
   std::vector<DepthMap> depths_mm;
   for (const cv::Mat& frame : frames) {

@@ -86,6 +86,11 @@ void add_geometry(CLI::App& app, Common& common, Arguments& given, std::function
       ->check(CLI::PositiveNumber);
   sub->add_option("--index", given.plate.refractive_index,
                   "refractive index of the fluid, 1.33 for water");
+  sub->add_flag("--srgb", given.plate.is_srgb,
+                "the camera writes light by the curve of sRGB, as webcams do");
+  sub->add_option("--mosaic", given.plate.mosaic,
+                  "colours of the first four pixels of raw pictures")
+      ->check(CLI::IsMember({"rggb", "bggr", "grbg", "gbrg"}));
 
   sub = add(
       app, common, "shape",

@@ -77,8 +77,8 @@ replay::Sensor known_sensor(const fs::path& file, const std::vector<std::string>
   return replay::read_sensor(file, content);
 }
 
-std::vector<cv::Mat> read_pictures(const fs::path& folder) {
-  replay::FrameSource source = replay::FrameSource::of_folder(folder);
+std::vector<cv::Mat> read_pictures(const fs::path& folder, const replay::PictureFormat& format) {
+  replay::FrameSource source = replay::FrameSource::of_folder(folder, format);
   std::vector<cv::Mat> pictures = {source.next()};
   while (static_cast<int>(pictures.size()) < source.size()) {
     pictures.push_back(replay::next_frame(source, pictures.front().size()));

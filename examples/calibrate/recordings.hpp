@@ -19,8 +19,10 @@ using DepthMap = cv::Mat_<float>;
 replay::Sensor known_sensor(const std::filesystem::path& file,
                             const std::vector<std::string>& sections);
 
-/// Reads all pictures of a folder, sorted by name, all of the same size. Throws replay::Failure.
-std::vector<cv::Mat> read_pictures(const std::filesystem::path& folder);
+/// Reads all pictures of a folder, sorted by name, all of the same size, as colours linear in
+/// light. Throws replay::Failure.
+std::vector<cv::Mat> read_pictures(const std::filesystem::path& folder,
+                                   const replay::PictureFormat& format = {});
 
 /// A sphere over the plate.
 struct Sphere {

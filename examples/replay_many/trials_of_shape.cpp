@@ -38,11 +38,10 @@ Trial camera_plate() {
     return Pair(low, chance.drawn_from(pair.second));
   };
   const auto fit = [](const Pair& pair) {
-    const auto low = calibrate::fit_plate(pair.first);
-    const auto found = calibrate::plate_distance(low, calibrate::fit_plate(pair.second), raised_mm);
-    const double pitch = 1 / low.px_per_mm;
-    return Estimate{{pitch, low.middle_px.x, found.mm},
-                    diagonal({pitch * pitch * low.px_per_mm_sd, low.middle_sd_px, found.sd_mm})};
+    const auto found = calibrate::fit_camera(pair.first, pair.second, raised_mm, distance_mm);
+    return Estimate{
+        {found.camera.pitch_mm, found.camera.center_x_px, found.camera.plate_distance_mm},
+        diagonal({found.pitch_sd_mm, found.center_sd_px, found.distance_sd_mm})};
   };
   return trial({"pitch_mm", "center_x_px", "plate_distance_mm"}, {pitch_mm, 319.5, distance_mm},
                0.1, measure, draw, fit);

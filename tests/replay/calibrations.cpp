@@ -9,11 +9,13 @@
 #include <fstream>
 #include <string>
 
+#include "calibrate/geometry.hpp"
 #include "calibrate/recordings.hpp"
 #include "replay/foam/sensor.hpp"
 #include "replay/io/failure.hpp"
 #include "support/catch.hpp"
 #include "support/inflated_rubber.hpp"
+#include "support/pad.hpp"
 
 namespace {
 
@@ -233,6 +235,17 @@ TEST_CASE("A sensor file with unknown keys or of another version is refused", "[
   };
   CHECK(with("/version", 2).find("version = 2") != std::string::npos);
   CHECK(with("/camera/pich_mm", 1).find("unknown key camera.pich_mm") != std::string::npos);
+  CHECK(with("/camera/pitch_mm", {0.1, 0.1, 0.1}).find("two numbers") != std::string::npos);
+  CHECK(with("/camera/pitch_mm", {0.1, -0.1}).find("pixel_aspect = -1") != std::string::npos);
+  CHECK(with("/camera/distortion", {0.1, 0, 0.01}).find("p1") != std::string::npos);
+  CHECK(with("/camera/distortion", {0.1, 0, 0, 0, 0}).empty());
+  CHECK(with("/camera/mosaic", "rgbg").find("\"rggb\" or \"bggr\"") != std::string::npos);
+  CHECK(with("/camera/response", "gamma").find("\"linear\" or \"srgb\"") != std::string::npos);
+  std::vector<double> curve(256, 1);
+  CHECK(with("/camera/response", curve).empty());
+  curve[3] = 0;
+  CHECK(with("/camera/response", curve).find("256 values that grow") != std::string::npos);
+  CHECK(with("/camera/response", {0, 1}).find("256 values that grow") != std::string::npos);
   CHECK(with("/calibration/absorption/residuals", 1).find("residuals") != std::string::npos);
   CHECK(with("/calibration/absorption/parameters/kappa", 1).find("[value") != std::string::npos);
   CHECK(with("/calibration/absorption/covariance", "x").find("rows of") != std::string::npos);
@@ -263,4 +276,126 @@ TEST_CASE("Rays meet a cap and a ball where these are", "[calibrate]") {
   }
   CHECK(calibrate::depth_on(camera, 30, 40, ball, false) < 12);
   CHECK(std::isnan(calibrate::depth_on(camera, 300, 400, ball, false)));  // the ray misses the ball
+}
+
+namespace {
+
+/// Where a camera in air sees a target of 9 x 9 dots, 3 mm apart, that is turned, shifted, tilted
+/// about y, and raised.
+std::vector<calibrate::PlateDot> target(const fingerpad::Camera<double>& camera,
+                                        double raised_mm,
+                                        double turn,
+                                        double shift_mm,
+                                        double tilt = 0,
+                                        double noise_px = 0) {
+  test::Random random(7);
+  std::vector<calibrate::PlateDot> dots;
+  for (int k = 0; k < 81; ++k) {
+    const double u = 3.0 * (k % 9 - 4), v = 3.0 * (k / 9 - 4);
+    const double x = u * std::cos(turn) - v * std::sin(turn) + shift_mm;
+    const double y = u * std::sin(turn) + v * std::cos(turn) - 2 * shift_mm;
+    const double away = camera.plate_distance_mm + raised_mm + x * std::sin(tilt);
+    auto pixel = pixel_at_tangents(camera, {x * std::cos(tilt) / away, y / away});
+    pixel.x += noise_px * random.normal();
+    pixel.y += noise_px * random.normal();
+    dots.push_back({{u, v}, pixel});
+  }
+  return dots;
+}
+
+}  // namespace
+
+TEST_CASE("The camera of two pictures of a target is found", "[calibrate]") {
+  fingerpad::Camera<double> lens;
+  lens.plate_distance_mm = 47;
+  lens.center_x_px = 322.3;
+  lens.center_y_px = 237.1;
+  lens.pixel_aspect = 1.02;
+  lens.distortion_k1 = -0.12;
+  const auto of = [](const auto& camera, double tilt, double noise_px) {
+    return calibrate::fit_camera(target(camera, 0, 0.03, 0, tilt, noise_px),
+                                 target(camera, 10, -0.02, 0.1, tilt, noise_px), 10, 0);
+  };
+  const auto exact = of(lens, 0, 0);
+  CHECK(exact.camera.plate_distance_mm == Approx(47).epsilon(1e-9));
+  CHECK(exact.camera.pitch_mm == Approx(0.08).epsilon(1e-9));
+  CHECK(exact.camera.pixel_aspect == Approx(1.02).epsilon(1e-9));
+  CHECK(exact.camera.center_x_px == Approx(322.3).epsilon(1e-9));
+  CHECK(exact.camera.center_y_px == Approx(237.1).epsilon(1e-9));
+  CHECK(exact.camera.distortion_k1 == Approx(-0.12).epsilon(1e-9));
+  CHECK(exact.moved_mm == Approx(std::hypot(0.1, 0.2)).epsilon(1e-6));
+  CHECK(exact.residual_px < 1e-9);
+  // with noise, within its standard deviations; what is not there is not fitted
+  const auto noisy = of(lens, 0, 0.05);
+  CHECK(noisy.residual_px == Approx(0.05).epsilon(0.2));
+  CHECK(std::abs(noisy.camera.plate_distance_mm - 47) < 4 * noisy.distance_sd_mm);
+  CHECK(std::abs(noisy.camera.distortion_k1 + 0.12) < 4 * noisy.k1_sd);
+  CHECK(std::abs(noisy.camera.pixel_aspect - 1.02) < 4 * noisy.aspect_sd);
+  CHECK((noisy.distance_sd_mm < 0.1 && noisy.k1_sd < 0.005 && noisy.aspect_sd < 1e-3));
+  const auto pinhole = of(fingerpad::Camera<double>(), 0, 0.05);
+  CHECK(pinhole.camera.pixel_aspect == 1);
+  CHECK(pinhole.camera.distortion_k1 == 0);
+  // one picture has no distance
+  const auto one = calibrate::fit_camera(target(lens, 0, 0.03, 0), {}, 0, 47);
+  CHECK(one.camera.plate_distance_mm == 47);
+  CHECK(one.camera.distortion_k1 == Approx(-0.12).epsilon(1e-9));
+  CHECK(std::isnan(one.distance_sd_mm));
+  // a camera that looks at the target askew shows in the residual
+  CHECK(of(lens, 0.02, 0).residual_px > 0.2);
+}
+
+TEST_CASE("What a camera does to light is undone where its pictures are read", "[calibrate]") {
+  // sRGB, at the values of 8 bit and between them
+  const replay::PictureFormat srgb{replay::srgb_response(), ""};
+  cv::Mat_<cv::Vec3b> stored(1, 256);
+  for (int k = 0; k < 256; ++k) {
+    stored(0, k) = cv::Vec3b::all(static_cast<uchar>(k));
+  }
+  const cv::Mat_<cv::Vec3w> light = replay::linear_colours(stored, srgb, "x");
+  CHECK(light(0, 0)[1] == 0);
+  CHECK(light(0, 10)[1] == std::lround(256 * 255 * 10 / 255.0 / 12.92));
+  CHECK(light(0, 188)[1] / 256.0 == Approx(255 * 0.5029).epsilon(1e-3));
+  CHECK(light(0, 255)[2] == 255 * 256);
+  const cv::Mat_<cv::Vec3w> between(1, 1, cv::Vec3w::all(100 * 256 + 128));
+  const cv::Mat_<cv::Vec3w> half = replay::linear_colours(between, srgb, "x");
+  CHECK(std::abs(half(0, 0)[0] - (light(0, 100)[0] + light(0, 101)[0]) / 2) <= 1);
+  CHECK(cv::norm(replay::linear_colours(stored, {}, "x"), stored, cv::NORM_INF) == 0);
+  // a mosaic: its own colours stay, and a ramp is found between them
+  const auto ramp = [](int i, int j, int c) { return 40 + 20 * c + 2 * i + 3 * j; };
+  for (const char* mosaic : {"rggb", "bggr", "grbg", "gbrg"}) {
+    cv::Mat_<uchar> raw(12, 16);
+    for (int i = 0; i < raw.rows; ++i) {
+      for (int j = 0; j < raw.cols; ++j) {
+        const char colour = mosaic[2 * (i % 2) + j % 2];
+        raw(i, j) = static_cast<uchar>(ramp(i, j, colour == 'b' ? 0 : colour == 'g' ? 1 : 2));
+      }
+    }
+    const cv::Mat_<cv::Vec3w> colours = replay::linear_colours(raw, {{}, mosaic}, "x");
+    for (int i = 2; i < raw.rows - 2; ++i) {
+      for (int j = 2; j < raw.cols - 2; ++j) {
+        for (int c = 0; c < 3; ++c) {
+          CHECK(colours(i, j)[c] == 256 * ramp(i, j, c));
+        }
+      }
+    }
+  }
+  CHECK_THROWS_AS(replay::linear_colours(stored, {{}, "rggb"}, "x"), replay::Failure);
+  CHECK_THROWS_AS(replay::linear_colours(cv::Mat_<uchar>(4, 4), {}, "x"), replay::Failure);
+}
+
+TEST_CASE("A sensor file tells lens, pixels and light of a camera", "[calibrate]") {
+  const fs::path file = scratch("lens");
+  Outcome outcome = camera_and_more();
+  outcome.sections["camera"]["pitch_mm"] = {0.08, 0.0816};
+  outcome.sections["camera"]["distortion"] = {-0.12, 0.02};
+  outcome.sections["camera"]["response"] = "srgb";
+  outcome.sections["camera"]["mosaic"] = "gbrg";
+  save(outcome, file);
+  const replay::Sensor sensor = replay::read_sensor(file);
+  CHECK(sensor.camera.pitch_mm == 0.08);
+  CHECK(sensor.camera.pixel_aspect == Approx(1.02));
+  CHECK(sensor.camera.distortion_k1 == -0.12);
+  CHECK(sensor.camera.distortion_k2 == 0.02);
+  CHECK(sensor.pictures.response == replay::srgb_response());
+  CHECK(sensor.pictures.mosaic == "gbrg");
 }

@@ -5,11 +5,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -92,21 +95,80 @@ QuietCodecs::~QuietCodecs() {
   }
 }
 
-void expects_colour_image(const cv::Mat& image, const fs::path& file) {
+std::vector<double> srgb_response() {
+  std::vector<double> light;
+  for (int k = 0; k < 256; ++k) {
+    const double y = k / 255.0;
+    light.push_back(255 * (y <= 0.04045 ? y / 12.92 : std::pow((y + 0.055) / 1.055, 2.4)));
+  }
+  return light;
+}
+
+cv::Mat read_stored_image(const fs::path& file) {
+  cv::Mat image = read_image(file);
   if (image.depth() != CV_8U && image.depth() != CV_16U) {
     fail(file, "must have 8 or 16 bits per channel");
   }
-  if (image.channels() < 3) {
-    fail(file, "has " + std::to_string(image.channels()) +
-                   (image.channels() == 1 ? " channel" : " channels") +
-                   ", but must be a colour image (red and green are used)");
-  }
+  return image;
 }
 
-cv::Mat read_colour_image(const fs::path& file) {
-  cv::Mat image = read_image(file);
-  expects_colour_image(image, file);
+namespace {
+
+/// 16 bit, 256 units per grey level.
+cv::Mat in_16_bit(const cv::Mat& image) {
+  cv::Mat wide;
+  image.convertTo(wide, CV_16U, image.depth() == CV_16U ? 1 : 256);
+  return wide;
+}
+
+/// `image` has 16 bit; between the values of 8 bit, the response is straight.
+cv::Mat without_response(cv::Mat image, const std::vector<double>& response) {
+  for (int i = 0; i < image.rows; ++i) {
+    auto* row = image.ptr<ushort>(i);
+    for (int j = 0; j < image.cols * image.channels(); ++j) {
+      const std::size_t low = row[j] / 256U, high = (std::min)(low + 1, std::size_t(255));
+      const double between = row[j] % 256U / 256.0;
+      const double light = response[low] + between * (response[high] - response[low]);
+      row[j] = cv::saturate_cast<ushort>(256 * light);
+    }
+  }
   return image;
+}
+
+/// Each pixel's own colour, and the means of its neighbours for the other two.
+cv::Mat without_mosaic(const cv::Mat& image, const std::string& mosaic) {
+  // OpenCV names a mosaic by the second and third pixel of the second row
+  const int code = mosaic == "rggb"   ? cv::COLOR_BayerBG2BGR
+                   : mosaic == "bggr" ? cv::COLOR_BayerRG2BGR
+                   : mosaic == "grbg" ? cv::COLOR_BayerGB2BGR
+                                      : cv::COLOR_BayerGR2BGR;
+  cv::Mat colours;
+  cv::cvtColor(image, colours, code);
+  return colours;
+}
+
+}  // namespace
+
+cv::Mat linear_colours(const cv::Mat& stored, const PictureFormat& format, const fs::path& file) {
+  const bool is_raw = !format.mosaic.empty();
+  if (stored.depth() != CV_8U && stored.depth() != CV_16U) {
+    fail(file, "must have 8 or 16 bits per channel");
+  }
+  if (is_raw ? stored.channels() != 1 : stored.channels() < 3) {
+    fail(file, "has " + std::to_string(stored.channels()) +
+                   (stored.channels() == 1 ? " channel" : " channels") +
+                   (is_raw ? ", but camera.mosaic says that pictures are raw, of one channel"
+                           : ", but must be a colour image (red and green are used)"));
+  }
+  cv::Mat image = stored;
+  if (!format.response.empty()) {
+    image = without_response(in_16_bit(image), format.response);
+  }
+  return is_raw ? without_mosaic(in_16_bit(image), format.mosaic) : image;
+}
+
+cv::Mat read_colour_image(const fs::path& file, const PictureFormat& format) {
+  return linear_colours(read_stored_image(file), format, file);
 }
 
 cv::Mat_<float> read_depth_image(const fs::path& file) {

@@ -4,6 +4,8 @@
 // Reads and writes image files, with one error line for each.
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 namespace replay {
 
@@ -25,11 +27,28 @@ class QuietCodecs {
   int saved_stderr_;
 };
 
-/// Reads an 8- or 16-bit colour image (BGR or BGRA, OpenCV order); throws Failure.
-cv::Mat read_colour_image(const std::filesystem::path& file);
+/// How a camera writes light into its pictures.
+struct PictureFormat {
+  std::vector<double>
+      response;        ///< light of each value of 8 bit, 0 to 255; empty: the value itself
+  std::string mosaic;  ///< colours of the first two pixels of the first two rows, "rggb", of raw
+                       ///< pictures of one channel; empty: colour pictures
+};
+/// The response of sRGB.
+std::vector<double> srgb_response();
 
-/// Throws Failure if `image` is not an 8- or 16-bit colour image; `file` is for the message.
-void expects_colour_image(const cv::Mat& image, const std::filesystem::path& file);
+/// Reads an image of 8 or 16 bit as it is stored; throws Failure.
+cv::Mat read_stored_image(const std::filesystem::path& file);
+
+/// An 8- or 16-bit colour image (BGR or BGRA, OpenCV order), linear in light, of a stored image:
+/// the one place where a response curve or a mosaic is undone. Throws Failure, with `file` in its
+/// message, if the image has not this format.
+cv::Mat linear_colours(const cv::Mat& stored,
+                       const PictureFormat& format,
+                       const std::filesystem::path& file);
+
+/// Reads such an image; throws Failure.
+cv::Mat read_colour_image(const std::filesystem::path& file, const PictureFormat& format = {});
 
 /// Reads a 32-bit float image of one channel, mm; throws Failure.
 cv::Mat_<float> read_depth_image(const std::filesystem::path& file);

@@ -49,8 +49,9 @@ bool comes_before(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-FrameSource FrameSource::of_folder(const fs::path& folder) {
+FrameSource FrameSource::of_folder(const fs::path& folder, PictureFormat format) {
   FrameSource source;
+  source.format_ = std::move(format);
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error) {
@@ -73,8 +74,9 @@ FrameSource FrameSource::of_folder(const fs::path& folder) {
   return source;
 }
 
-FrameSource FrameSource::of_video(const fs::path& file) {
+FrameSource FrameSource::of_video(const fs::path& file, PictureFormat format) {
   FrameSource source;
+  source.format_ = std::move(format);
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
     fail(file, "there is no such video (named by \"video\" in sensor.json)");
@@ -107,15 +109,19 @@ fs::path FrameSource::last_file() const {
 }
 
 cv::Mat FrameSource::next() {
+  const cv::Mat stored = next_stored();
+  return linear_colours(stored, format_, last_file());
+}
+
+cv::Mat FrameSource::next_stored() {
   ++position_;
   if (!video_) {
-    return read_colour_image(last_file());
+    return read_stored_image(last_file());
   }
   const cv::Mat frame = video_->grab() ? video_->retrieve() : cv::Mat();
   if (frame.empty()) {
     fail(last_file(), "frame " + std::to_string(position_ - 1) + " cannot be decoded");
   }
-  expects_colour_image(frame, last_file());
   return frame;
 }
 
@@ -135,7 +141,7 @@ namespace {
 void read_reference(const fs::path& folder, Recording& recording) {
   const fs::path frame_file = folder / recording.sensor.reference_frame;
   const fs::path depth_file = folder / recording.sensor.reference_depth;
-  recording.reference = read_colour_image(frame_file);
+  recording.reference = read_colour_image(frame_file, recording.sensor.pictures);
   recording.reference_depth = read_depth_image(depth_file);
   if (recording.reference_depth.size() != recording.reference.size()) {
     fail(depth_file, "is " + size_of(recording.reference_depth) + ", but " +
@@ -166,7 +172,7 @@ Recording open_pad(const fs::path& folder) {
     read_reference(folder, recording);
   }
   if (fs::is_directory(folder / "free", error)) {
-    recording.free_frames = FrameSource::of_folder(folder / "free");
+    recording.free_frames = FrameSource::of_folder(folder / "free", recording.sensor.pictures);
   }
   return recording;
 }
@@ -174,8 +180,9 @@ Recording open_pad(const fs::path& folder) {
 Recording open_recording(const fs::path& folder) {
   Recording recording = open_pad(folder);
   const auto& video = recording.sensor.video;
-  recording.frames =
-      video ? FrameSource::of_video(folder / *video) : FrameSource::of_folder(folder / "frames");
+  const PictureFormat& format = recording.sensor.pictures;
+  recording.frames = video ? FrameSource::of_video(folder / *video, format)
+                           : FrameSource::of_folder(folder / "frames", format);
   if (recording.sensor.dots_only) {
     read_first_picture(folder, recording);
   }

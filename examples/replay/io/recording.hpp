@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "replay/io/images.hpp"
 #include "replay/io/sensor.hpp"
 #include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
@@ -23,20 +24,23 @@ class FrameSource {
  public:
   /// Frames from the files of a folder, without hidden ones, in natural order (frame10 after
   /// frame2), or from a video file. Throws Failure.
-  static FrameSource of_folder(const std::filesystem::path& folder);
-  static FrameSource of_video(const std::filesystem::path& file);
+  static FrameSource of_folder(const std::filesystem::path& folder, PictureFormat format = {});
+  static FrameSource of_video(const std::filesystem::path& file, PictureFormat format = {});
 
   int size() const { return count_; }
   /// Moves to frame `first`, in [0, size()].
   void seek(int first);
-  /// The next frame, 8- or 16-bit colour; throws Failure.
+  /// The next frame, 8- or 16-bit colour, linear in light; throws Failure.
   cv::Mat next();
+  /// The next frame as it is stored; throws Failure.
+  cv::Mat next_stored();
   /// The file of the last frame, for messages.
   std::filesystem::path last_file() const;
 
  private:
   std::vector<std::filesystem::path> files_;  ///< one per frame, or the video alone
   std::optional<Video> video_;
+  PictureFormat format_;
   int count_ = 0;
   int position_ = 0;
 };

@@ -18,20 +18,62 @@ using Section = JsonSection;
 constexpr int min_dots = 2;  // rows and columns of a print
 constexpr int max_dots = 100;
 
-fingerpad::Camera<double> read_camera(const Section& root) {
+/// Light of each value of 8 bit, 255 at the last; empty if linear.
+std::vector<double> read_response(const Section& section) {
+  if (!section.at("response").is_array()) {
+    const bool is_srgb = section.one_of("response", {"linear", "srgb"}) == "srgb";
+    return is_srgb ? srgb_response() : std::vector<double>{};
+  }
+  const auto values = section.numbers<256>("response");
+  std::vector<double> light(values.begin(), values.end());
+  if (section.at("response").size() != 256 || !(light.front() >= 0) || !(light.back() > 0) ||
+      !std::is_sorted(light.begin(), light.end())) {
+    section.refuse("response must have 256 values that grow, from 0 or more");
+  }
+  const double most = light.back();
+  for (double& value : light) {
+    value *= 255 / most;
+  }
+  return light;
+}
+
+void read_camera(const Section& root, Sensor& sensor) {
   const Section section = root.section(
       "camera",
       {{"plate_distance_mm", "distance from the camera's center to the plate's inner face, mm"},
        {"refractive_index", "refractive index of the fluid, 1.33 for water"},
        {"center_px", "[x, y] of the pixel on the optical axis"},
-       {"pitch_mm", "size of a pixel on the plate's inner face, mm"}});
+       {"pitch_mm", "size of a pixel on the plate's inner face, mm, or its [width, height]"},
+       {"distortion", "radial distortion of the lens, [k1, k2] of OpenCV"},
+       {"response", "linear, srgb, or a list of the light of each of the 256 values"},
+       {"mosaic", "colours of the first four pixels of raw pictures: rggb, bggr, grbg or gbrg"}});
   fingerpad::Camera<double> camera;
   camera.plate_distance_mm = section.number("plate_distance_mm");
   camera.refractive_index = section.number("refractive_index");
   std::tie(camera.center_x_px, camera.center_y_px) = section.pair("center_px");
-  camera.pitch_mm = section.number("pitch_mm");
+  if (section.at("pitch_mm").is_array()) {
+    const auto [width, height] = section.pair("pitch_mm");
+    camera.pitch_mm = width;
+    camera.pixel_aspect = height / width;
+  } else {
+    camera.pitch_mm = section.number("pitch_mm");
+  }
+  if (section.has("distortion")) {
+    const auto [k1, k2, p1, p2, k3] = section.numbers<5>("distortion");
+    if (p1 != 0 || p2 != 0 || k3 != 0) {
+      section.refuse("distortion has p1, p2 or k3, which the rays of this program have not");
+    }
+    camera.distortion_k1 = k1;
+    camera.distortion_k2 = k2;
+  }
   require(camera);
-  return camera;
+  sensor.camera = camera;
+  if (section.has("response")) {
+    sensor.pictures.response = read_response(section);
+  }
+  if (section.has("mosaic")) {
+    sensor.pictures.mosaic = section.one_of("mosaic", {"rggb", "bggr", "grbg", "gbrg"});
+  }
 }
 
 fingerpad::Absorption<double> read_absorption(const Section& root) {
@@ -242,7 +284,7 @@ void read_dots_only(const Section& root, Sensor& sensor) {
 /// Reads the keys of a recording with depth.
 void read_depth(const std::filesystem::path& file, const Section& root, Sensor& sensor) {
   try {
-    sensor.camera = read_camera(root);
+    read_camera(root, sensor);
     sensor.absorption = read_absorption(root);
   } catch (const fingerpad::parameter_error& error) {
     fail(file, error.what());

@@ -13,6 +13,7 @@
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
+#include "replay/io/images.hpp"
 
 namespace replay {
 
@@ -67,6 +68,7 @@ struct NeighbourLight {
 
 struct Sensor {
   fingerpad::Camera<double> camera;
+  PictureFormat pictures;
   fingerpad::Absorption<double> absorption;
   Pad pad;
   std::string reference_frame;  ///< paths as written, relative to the recording; may be empty
@@ -75,8 +77,8 @@ struct Sensor {
   std::optional<std::string> video;  ///< instead of the folder frames/
   std::optional<int> smoothing_px;   ///< window width, odd; empty: replay does not smooth
   std::optional<Dots> dots;
-  bool dots_only = false;  ///< if true, camera, absorption, pad and dots are empty
-  DotPattern pattern;      ///< only of a dots-only recording
+  bool dots_only = false;         ///< if true, camera, absorption, pad and dots are empty
+  DotPattern pattern;             ///< only of a dots-only recording
   fingerpad::StickOptions stick;  ///< lengths in px
   std::optional<double> contact_threshold_per_mm;  ///< empty: from the free pad
   std::optional<ForceLookUp> force;

@@ -13,10 +13,11 @@
 
 namespace replay {
 
-LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
+LiveFrames LiveFrames::of_camera(int number, cv::Size size, const PictureFormat& format) {
   LiveFrames frames;
   frames.name_ = "camera " + std::to_string(number);
   frames.size_ = size;
+  frames.format_ = format;
   {
     const QuietCodecs quiet;
     frames.camera_.open(number);
@@ -33,10 +34,12 @@ LiveFrames LiveFrames::of_camera(int number, cv::Size size) {
 
 LiveFrames LiveFrames::of_video(const std::filesystem::path& file,
                                 cv::Size size,
+                                const PictureFormat& format,
                                 bool in_real_time) {
   LiveFrames frames;
   frames.name_ = file;
   frames.size_ = size;
+  frames.format_ = format;
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     fail(file, "there is no such video");
@@ -86,13 +89,14 @@ bool LiveFrames::next(cv::Mat& frame) {
   if (frame.empty()) {
     fail(name_, "frame " + std::to_string(number_) + " cannot be decoded");
   }
-  expects_colour_image(frame, name_);
+  const cv::Mat colours = linear_colours(frame, format_, name_);
   if (frame.size() != size_ || frame.depth() != CV_8U) {
     fail(name_, "delivers " + std::to_string(frame.cols) + " x " + std::to_string(frame.rows) +
                     " px of " + (frame.depth() == CV_8U ? "8" : "16") +
                     " bits, but live frames must have 8 bits and the size of the reference, " +
                     std::to_string(size_.width) + " x " + std::to_string(size_.height) + " px");
   }
+  frame = colours;
   return true;
 }
 

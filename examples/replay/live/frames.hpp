@@ -8,6 +8,7 @@
 #include <opencv2/videoio.hpp>
 #include <optional>
 
+#include "replay/io/images.hpp"
 #include "replay/io/video.hpp"
 
 namespace replay {
@@ -17,13 +18,16 @@ class LiveFrames {
   using Clock = std::chrono::steady_clock;
 
   /// Requests frames of `size` from the camera. Both functions throw Failure.
-  static LiveFrames of_camera(int number, cv::Size size);
+  static LiveFrames of_camera(int number, cv::Size size, const PictureFormat& format);
   /// With `in_real_time` each frame arrives when it is due, and frames that are not fetched in time
   /// are skipped, as with a camera. Otherwise all frames arrive as fast as they are fetched.
-  static LiveFrames of_video(const std::filesystem::path& file, cv::Size size, bool in_real_time);
+  static LiveFrames of_video(const std::filesystem::path& file,
+                             cv::Size size,
+                             const PictureFormat& format,
+                             bool in_real_time);
 
-  /// Waits for the next frame, 8-bit colour; returns false at the end of a video. Throws Failure
-  /// for a frame of another size or type, or if a camera gives no frame.
+  /// Waits for the next frame, of 8 bit, and makes it linear in light; returns false at the end of
+  /// a video. Throws Failure for a frame of another size or type, or if a camera gives no frame.
   bool next(cv::Mat& frame);
   /// Skips the next frame without waiting for it.
   void skip();
@@ -42,6 +46,7 @@ class LiveFrames {
   std::optional<Video> video_;  ///< in place of the camera
   std::filesystem::path name_;
   cv::Size size_;
+  PictureFormat format_;
   double rate_hz_ = 0;
   Clock::duration period_ = {};  ///< frame period of a video; 0 for a camera
   bool in_real_time_ = true;

@@ -177,8 +177,9 @@ int run_live(const Options& options, const LiveOptions& live) {
     fail(options.recording, "live pictures need a reference image of the free pad and its depth");
   }
   const cv::Size size = pad.reference.size();
-  LiveFrames frames = live.camera ? LiveFrames::of_camera(*live.camera, size)
-                                  : LiveFrames::of_video(live.video, size, !live.headless);
+  LiveFrames frames =
+      live.camera ? LiveFrames::of_camera(*live.camera, size, pad.sensor.pictures)
+                  : LiveFrames::of_video(live.video, size, pad.sensor.pictures, !live.headless);
   watch_for_interrupts();
   if (live.headless) {
     play_to_folder(options, pad, frames);
