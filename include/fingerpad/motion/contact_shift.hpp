@@ -16,12 +16,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <numeric>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/dot_frame.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 
@@ -89,24 +90,20 @@ class ContactShift {
   explicit ContactShift(const Grid& reference, const ShiftOptions& options = {}) : o_(options) {
     require(options);
     const auto from = as_view(reference);
-    rows_ = from.rows();
-    cols_ = from.cols();
-    expects_grid_size("ContactShift", rows_, cols_, 0);
-    reference_.reserve(static_cast<std::size_t>(rows_ * cols_));
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        reference_.push_back(planar(from(i, j)));
-      }
-    }
-    leave_out(S(0));
-    leave_out(S(-1));
-    pitch_sq_ = mean_pitch_sq();
-    pairs_.resize(reference_.size());
-    residuals_.resize(reference_.size());
+    expects_grid_size("ContactShift", from.rows(), from.cols(), 0);
+    reference_ = detail::FrameOfDots<S>{from.rows(), from.cols()};
+    frame_ = reference_;
+    reference_.read(from, true);
+    std::vector<Index> cells(reference_.found.size() - static_cast<std::size_t>(frame_.width));
+    std::iota(cells.begin(), cells.end(), Index(0));
+    pitch_sq_ = detail::mean_pitch_sq(cells, reference_.found.data(), frame_.width);
+    side_.resize(frame_.found.size(), 0);
+    pairs_.resize(frame_.found.size());
+    residuals_.resize(frame_.found.size());
   }
 
-  Index rows() const { return rows_; }
-  Index cols() const { return cols_; }
+  Index rows() const { return frame_.rows; }
+  Index cols() const { return frame_.cols; }
 
   /// The shift in a frame with these `dots`, of which those with a true `contact` touch the object.
   template <dot_grid Grid, contact_mask Contact>
@@ -114,10 +111,11 @@ class ContactShift {
     const auto to = as_view(dots);
     const auto flags = as_view(contact);
     ShiftResult<S> result;
-    if (to.rows() != rows_ || to.cols() != cols_ || !same_size(to, flags)) {
+    if (to.rows() != rows() || to.cols() != cols() || !same_size(to, flags)) {
       return result;
     }
-    collect(to, flags);
+    frame_.read(to, true);
+    collect(flags);
     result.status = ShiftStatus::no_dots;
     if (count_ == 0) {
       return result;
@@ -138,7 +136,7 @@ class ContactShift {
     result.dots = static_cast<Index>(count_);
     result.residual_rms = S(0) < mean_sq ? sqrt(mean_sq) : S(0);
     result.status = shift.turns ? ShiftStatus::measured : ShiftStatus::one_place_only;
-    if (shift.turns && S(9) * pitch_sq_ < S(16) * mean_sq) {
+    if (shift.turns && S(0) < pitch_sq_ && S(9) * pitch_sq_ < S(16) * mean_sq) {
       result.status = ShiftStatus::not_rigid;
       return result;
     }
@@ -166,78 +164,36 @@ class ContactShift {
     S residual_sq(const Pair& p) const { return squared_norm(p.to - (*this)(p.from)); }
   };
 
-  template <planar_point P>
-  static Point2<S> planar(const P& p) {
-    return {S(point_traits<P>::x(p)), S(point_traits<P>::y(p))};
-  }
-  /// Removes dots of the reference at a position that marks lost dots in other software, if several
-  /// dots share it.
-  void leave_out(const S& mark) {
-    const auto is_mark = [&](const Point2<S>& p) { return p.x == mark && p.y == mark; };
-    if (std::count_if(reference_.begin(), reference_.end(), is_mark) > 1) {
-      std::replace_if(reference_.begin(), reference_.end(), is_mark,
-                      Point2<S>{not_a_number<S>(), not_a_number<S>()});
-    }
-  }
-  /// Mean square distance of neighbours in the reference; infinite if there are none.
-  S mean_pitch_sq() const {
-    S sum = S(0);
-    double count = 0;
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        for (const auto& [k, l] : {DotIndex{i, j + 1}, DotIndex{i + 1, j}}) {
-          if (k < rows_ && l < cols_ && is_plausible(from_at(i, j)) &&
-              is_plausible(from_at(k, l))) {
-            sum = sum + squared_norm(from_at(k, l) - from_at(i, j));
-            count += 1;
-          }
-        }
-      }
-    }
-    return count > 0 ? sum / S(count) : S(std::numeric_limits<scalar_real_t<S>>::infinity());
-  }
-  const Point2<S>& from_at(Index i, Index j) const {
-    return reference_[static_cast<std::size_t>(i * cols_ + j)];
-  }
+  static Point2<S> planar(const Point3<S>& p) { return {p.x, p.y}; }
 
-  template <class View, class Flags>
-  void collect(const View& to, const Flags& flags) {
+  /// Lists the chosen dots. A dot is beside the edge if a neighbour is on the other side of it;
+  /// missing and unknown dots have no side.
+  template <class Flags>
+  void collect(const Flags& flags) {
     count_ = 0;
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j) {
-        const Point2<S> dot = planar(to(i, j));
-        const bool chosen = o_.edge_dots ? is_beside_edge(to, flags, i, j) : touches(flags, i, j);
-        if (chosen && is_plausible(dot) && is_plausible(from_at(i, j))) {
-          pairs_[count_++] = {from_at(i, j), dot, S(1)};
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
+        const cell_t<Flags> flag = flags(i, j);
+        bool has_side = is_finite(frame_.found[k]);
+        if constexpr (std::is_same_v<cell_t<Flags>, Touch>) {
+          has_side = has_side && flag != Touch::unknown;
         }
+        side_[k] = !has_side ? 0 : is_contact(flag) ? 1 : -1;
       }
     }
-  }
-  template <class Flags>
-  static bool touches(const Flags& flags, Index i, Index j) {
-    return is_contact(cell_t<Flags>(flags(i, j)));
-  }
-  template <class Flags>
-  static bool is_unknown(const Flags& flags, Index i, Index j) {
-    if constexpr (std::is_same_v<cell_t<Flags>, Touch>) {
-      return flags(i, j) == Touch::unknown;
-    } else {
-      return false;
-    }
-  }
-  /// Whether a neighbour is on the other side of the edge. Missing and unknown dots do not count.
-  template <class View, class Flags>
-  bool is_beside_edge(const View& to, const Flags& flags, Index i, Index j) const {
-    const bool inside = touches(flags, i, j);
-    for (Index k = (std::max)(i - 1, Index(0)); k < (std::min)(i + 2, rows_); ++k) {
-      for (Index l = (std::max)(j - 1, Index(0)); l < (std::min)(j + 2, cols_); ++l) {
-        if (touches(flags, k, l) != inside && !is_unknown(flags, k, l) &&
-            is_plausible(planar(to(k, l)))) {
-          return !is_unknown(flags, i, j);
+    const Index w = frame_.width;
+    for (Index k = w; k + w < detail::size_of(side_); ++k) {
+      bool chosen = side_[k] > 0;
+      if (o_.edge_dots) {
+        chosen = false;
+        for (const Index by : {-w - 1, -w, 1 - w, Index(-1), Index(1), w - 1, w, w + 1}) {
+          chosen = chosen || side_[k] * side_[k + by] < 0;
         }
       }
+      if (chosen && is_finite(reference_.found[k])) {
+        pairs_[count_++] = {planar(reference_.found[k]), planar(frame_.found[k]), S(1)};
+      }
     }
-    return false;
   }
 
   Rigid fit() const {
@@ -290,10 +246,10 @@ class ContactShift {
   }
 
   ShiftOptions o_;
-  Index rows_ = 0, cols_ = 0;
-  std::vector<Point2<S>> reference_;
-  S pitch_sq_ = S(0);
-  std::vector<Pair> pairs_;  ///< of this frame, `count_` of them
+  detail::FrameOfDots<S> reference_{0, 0}, frame_{0, 0};
+  S pitch_sq_ = S(0);  ///< mean square distance of neighbours in the reference; 0: there are none
+  detail::Bordered<int> side_;  ///< 1: touches, -1: does not, 0: not known
+  std::vector<Pair> pairs_;     ///< of this frame, `count_` of them
   std::size_t count_ = 0;
   std::vector<scalar_real_t<S>> residuals_;
 };
