@@ -90,20 +90,14 @@ struct Normal {
   LeftOut left_out;
 };
 
-/// Compensates for displacement and rotation if that reduces the error for loads left out.
 Normal fit_normal(Samples samples, const Measure& by) {
-  const auto fitted = [&](bool compensated) {
-    const fingerpad::CurveOptions options{
-        .degree = curve_degree, .displaced = compensated, .rotated = compensated};
-    const auto fit = [&](Samples some) { return fingerpad::fit_normal_force(some, options); };
-    const auto error = [](const auto& model, const Sample& s) {
-      const fingerpad::NormalForce force(model.curve);
-      return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
-    };
-    return Normal{fit(samples), fingerpad::leave_one_load_out(samples, fit, error)};
+  const auto fit = [](Samples some) {
+    return fingerpad::fit_normal_force(some, {.degree = curve_degree});
   };
-  const Normal plain = fitted(false), compensated = fitted(true);
-  const Normal& best = compensated.left_out.rms < plain.left_out.rms ? compensated : plain;
+  const auto error = [](const auto& model, const Sample& s) {
+    return fingerpad::NormalForce(model.curve)(s.measure).force_n - s.normal_force_n;
+  };
+  const Normal best{fit(samples), fingerpad::leave_one_load_out(samples, fit, error)};
   warn("normal force", by.name, best.fit);
   const auto& curve = best.fit.curve;
   std::printf("normal force by %s: c1 m + c2 m^2 + c3 m^3 N, m from %.4g to %.4g %s\n", by.name,
@@ -111,10 +105,6 @@ Normal fit_normal(Samples samples, const Measure& by) {
   for (std::size_t k = 1; k <= curve_degree; ++k) {
     const char name[] = {'c', static_cast<char>('0' + k), '\0'};
     print(name, curve.coefficients[k], std::sqrt(best.fit.curve.covariance[k][k]));
-  }
-  if (best.fit.per_mm_sq_sd > 0) {
-    print("per_mm_sq, 1/mm^2", best.fit.curve.per_mm_sq, best.fit.per_mm_sq_sd);
-    print("per_rad_sq, 1/rad^2", best.fit.curve.per_rad_sq, best.fit.per_rad_sq_sd);
   }
   print("N", best.fit.curve.residual_sd_n, best.left_out);
   return best;
@@ -148,12 +138,12 @@ Shear fit_shear(Samples samples, const Measure& by) {
   });
   std::printf("tangential force by displacement and %s over %g %s\n", by.name, by.reference,
               by.unit);
-  print("N/mm", all.force.law.coefficients[0], all.force.coefficient_sd(0));
-  print("exponent", all.force.law.exponent, all.force.exponent_sd());
+  print("N/mm", all.force.law.coefficients[0], std::sqrt(all.force.covariance[0][0]));
+  print("exponent", all.force.law.exponent, std::sqrt(all.force.covariance[1][1]));
   print("N", all.force.residual_sd, all.force_left_out);
   std::printf("moment by rotation and %s over %g %s\n", by.name, by.reference, by.unit);
-  print("N mm/rad", all.moment.law.coefficients[0], all.moment.coefficient_sd(0));
-  print("exponent", all.moment.law.exponent, all.moment.exponent_sd());
+  print("N mm/rad", all.moment.law.coefficients[0], std::sqrt(all.moment.covariance[0][0]));
+  print("exponent", all.moment.law.exponent, std::sqrt(all.moment.covariance[1][1]));
   print("N mm", all.moment.residual_sd, all.moment_left_out);
   return all;
 }
@@ -166,8 +156,7 @@ void print_section(const Normal& normal, const Measure& by) {
   }
   std::printf("], \"from_%s\": %.4g, \"to_%s\": %.4g,\n", by.unit, fit.curve.from, by.unit,
               fit.curve.to);
-  std::printf("    \"per_mm_sq\": %.4g, \"per_rad_sq\": %.4g, \"residual_n\": %.3g },\n",
-              fit.curve.per_mm_sq, fit.curve.per_rad_sq, fit.curve.residual_sd_n);
+  std::printf("    \"residual_n\": %.3g },\n", fit.curve.residual_sd_n);
 }
 
 void print_section(const Shear& shear, const Measure& by) {
@@ -186,7 +175,8 @@ int main(int argc, char** argv) {
     const Normal of_area = fit_normal(by_area, area), of_depth = fit_normal(by_depth, depth);
     const Shear of_shear_by_area = fit_shear(by_area, area),
                 of_shear_by_depth = fit_shear(by_depth, depth);
-    const bool deep = of_shear_by_depth.force_left_out.rms < of_shear_by_area.force_left_out.rms;
+    const bool deep =
+        of_shear_by_depth.force_left_out.mean_abs < of_shear_by_area.force_left_out.mean_abs;
     std::printf("\"force\": {\n");
     print_section(of_area, area);
     print_section(of_depth, depth);

@@ -163,7 +163,7 @@ void add_normal(const std::string& name,
   };
   const auto error = [](const auto& found, const ForceSample<double>& s) {
     const NormalForce force(found.curve);
-    return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
+    return force(s.measure).force_n - s.normal_force_n;
   };
   add_look_up(name, "normal force", "N", pairs,
               OnScenes<decltype(fit), decltype(error)>{measure, ContactDotsOf::edge, fit, error});
@@ -172,11 +172,10 @@ void add_normal(const std::string& name,
 void add_tangential(const std::string& name,
                     ContactMeasure measure,
                     ContactDotsOf dots,
-                    const std::optional<double>& exponent = {},
-                    int degree = 1) {
+                    const std::optional<double>& exponent = {}) {
   const double reference = measure == ContactMeasure::depth ? 10 : 100;
   const auto fit = [=](const Samples& samples) {
-    return fit_tangential_force(span_of(samples), reference, exponent, {}, degree);
+    return fit_tangential_force(span_of(samples), reference, exponent);
   };
   const auto error = [=](const auto& found, const ForceSample<double>& s) {
     const Shear<> shear({reference, found.law, found.law});
@@ -221,14 +220,10 @@ int main(int argc, char** argv) {
   add_normal("depth, degree 2, published", depth, press, {.through_zero = false});
   add_normal("area, degree 2", area, plates);
   add_normal("area, degree 3", area, plates, {.degree = 3});
-  add_normal("area, degree 5", area, plates, {.degree = 5});
   add_normal("depth, degree 3", depth, plates, {.degree = 3});
-  add_normal("area, ScaledCompensation", area, plates,
-             {.degree = 3, .displaced = true, .rotated = true});
   add_tangential("central dot, published", area, center, 0.65);
   add_tangential("edge dots, area", area, edge);
   add_tangential("edge dots, depth", depth, edge);
-  add_tangential("edge dots, degree 2", area, edge, {}, 2);
   add_moment("central dot, published", center, 1.7);
   add_moment("edge dots", edge);
   return bench::run(argc, argv);

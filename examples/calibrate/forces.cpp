@@ -163,10 +163,10 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   const auto moment = fingerpad::fit_moment(samples, by.reference);
   Report report{.what = "shear", .residual = force.residual_sd, .residual_unit = "N"};
   report.parameters = {
-      {"force_n_per_mm", force.law.coefficients[0], force.coefficient_sd(0)},
-      {"displacement_exponent", force.law.exponent, force.exponent_sd()},
-      {"moment_n_mm_per_rad", moment.law.coefficients[0], moment.coefficient_sd(0)},
-      {"rotation_exponent", moment.law.exponent, moment.exponent_sd()},
+      {"force_n_per_mm", force.law.coefficients[0], std::sqrt(force.covariance[0][0])},
+      {"displacement_exponent", force.law.exponent, std::sqrt(force.covariance[1][1])},
+      {"moment_n_mm_per_rad", moment.law.coefficients[0], std::sqrt(moment.covariance[0][0])},
+      {"rotation_exponent", moment.law.exponent, std::sqrt(moment.covariance[1][1])},
       {"residual_of_the_moment_n_mm", moment.residual_sd}};
   if (std::isfinite(force.gauge_angle_sd_rad)) {
     constexpr double degrees = 57.29577951308232;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,22 +74,11 @@ auto without_lock(const Fit& fit) {
 
 NormalFit fit_normal_force(const Array& measure,
                            const Array& normal_force_n,
-                           const Array& displacement_mm,
-                           const Array& rotation_rad,
                            const CurveOptions& curve,
                            const FitOptions& options) {
   Samples samples = samples_of(measure);
   fill(samples, normal_force_n, "normal_force_n", 1,
        [](Sample& s, Cell x, Cell) { s.normal_force_n = *x; });
-  if (!displacement_mm.is_none()) {
-    fill(samples, displacement_mm, "displacement_mm", 2, [](Sample& s, Cell x, Cell y) {
-      s.displacement_mm = {*x, *y};
-    });
-  }
-  if (!rotation_rad.is_none()) {
-    fill(samples, rotation_rad, "rotation_rad", 1,
-         [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
-  }
   CurveOptions cubic_curve = curve;
   cubic_curve.degree = 3;
   return without_lock(
@@ -181,10 +171,7 @@ void bind_normal_force_fit(py::module_& module) {
       .def_readwrite("min_explained", &FitOptions::min_explained);
   bind_options<CurveOptions>(module, "CurveOptions",
                              "What fit_normal_force fits; see calibrate/look_up.hpp.")
-      .def_readwrite("through_zero", &CurveOptions::through_zero)
-      .def_readwrite("rising", &CurveOptions::rising)
-      .def_readwrite("displaced", &CurveOptions::displaced)
-      .def_readwrite("rotated", &CurveOptions::rotated);
+      .def_readwrite("through_zero", &CurveOptions::through_zero);
   py::class_<NormalFit>(module, "NormalForceFit", "A fitted curve; NormalForce(fit) looks it up.")
       .def_property_readonly("ok", &NormalFit::ok)
       .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
@@ -208,8 +195,6 @@ void bind_normal_force_fit(py::module_& module) {
           "smallest and largest measure")
       .def_property_readonly("residual_sd_n",
                              [](const NormalFit& f) { return f.curve.residual_sd_n; })
-      .def_property_readonly("per_mm_sq", [](const NormalFit& f) { return f.curve.per_mm_sq; })
-      .def_property_readonly("per_rad_sq", [](const NormalFit& f) { return f.curve.per_rad_sq; })
       .def_readonly("explained", &NormalFit::explained, "explained share of the variance");
 }
 
@@ -221,11 +206,12 @@ void bind_shear_fit(py::module_& module) {
           "stiffness", [](const ShearFit& f) { return f.fit.law.coefficients[0]; },
           "N/mm, or N mm/rad")
       .def_property_readonly("stiffness_sd",
-                             [](const ShearFit& f) { return f.fit.coefficient_sd(0); })
+                             [](const ShearFit& f) { return std::sqrt(f.fit.covariance[0][0]); })
       .def_property_readonly(
           "to", [](const ShearFit& f) { return f.fit.law.to; }, "mm, or rad")
       .def_property_readonly("exponent", [](const ShearFit& f) { return f.fit.law.exponent; })
-      .def_property_readonly("exponent_sd", [](const ShearFit& f) { return f.fit.exponent_sd(); })
+      .def_property_readonly("exponent_sd",
+                             [](const ShearFit& f) { return std::sqrt(f.fit.covariance[1][1]); })
       .def_property_readonly("residual_sd", [](const ShearFit& f) { return f.fit.residual_sd; })
       .def_property_readonly("explained", [](const ShearFit& f) { return f.fit.explained; });
 }
@@ -233,12 +219,10 @@ void bind_shear_fit(py::module_& module) {
 void bind_fits(py::module_& module) {
   module.def(
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
-      py::arg("displacement_mm") = py::none(), py::arg("rotation_rad") = py::none(),
       py::arg("curve") = CurveOptions(), py::arg("options") = FitOptions(),
       "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
-      "displacement_mm: (n, 2), rotation_rad: (n,), for CurveOptions(displaced=True,\n"
-      "rotated=True). NaN: not measured.");
+      "NaN: not measured.");
   module.def("fit_tangential_force", &fit_tangential_force, py::arg("measure"),
              py::arg("displacement_mm"), py::arg("tangential_force_n"), py::arg("reference"),
              py::arg("exponent") = py::none(), py::arg("options") = FitOptions(),

@@ -292,7 +292,7 @@ Trial robust_normal_force() {
 template <class Fit>
 Estimate of_shear(const Fit& found) {
   return {{found.law.coefficients[0], found.law.exponent},
-          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 4})};
+          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
 }
 
 Trial tangential_force() {

@@ -191,8 +191,8 @@ TEST_CASE("variance of a force by look-up is what repeated calibrations scatter 
     const auto fit = fit_of(dragged(noise_n, random));
     const auto p = seeded(std::array{fit.law.coefficients[0], fit.law.exponent});
     const auto force = force_at(p[0], p[1], measure, d);
-    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][4]},
-                                     {fit.covariance[4][0], fit.covariance[4][4]}};
+    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][1]},
+                                     {fit.covariance[1][0], fit.covariance[1][1]}};
     variance += carried_variance(force.x, covariance) / trials;
     scatter += square(force.x.value - truth.x) / trials;
   }

@@ -9,11 +9,11 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/foam.hpp"
 #include "fuzz/dots.hpp"
 
 using namespace fingerpad;
@@ -43,11 +43,8 @@ void try_forces(Input& in) {
   const std::span<const ForceSample<double>> samples(given);
   const FitOptions options{.robust = in.flag()};
   CurveOptions curve;
-  curve.displaced = in.flag();
-  curve.rotated = in.flag();
   curve.through_zero = in.flag();
-  curve.rising = in.flag();
-  curve.degree = static_cast<int>(in.whole(1, 5));
+  curve.degree = static_cast<int>(in.whole(1, 3));
   switch (in.whole(0, 3)) {
     case 0: {
       const auto fit = fit_normal_force(samples, curve, options);
@@ -212,7 +209,7 @@ void try_neighbour_light(Input& in) {
       truth(in, rows, cols, 5, 9);
   const std::vector of = {measured.view()}, with = {truth.view()};
   const auto fit =
-      fit_neighbour_light(in.number(0.05, 0.5), reference.view(), of, with, {1, in.whole(1, 5)});
+      fit_neighbour_light(in.number(0.05, 0.5), reference.view(), of, with, {1, in.whole(1, 3)});
   require(!fit.ok() || (is_finite(fit.rms_after_mm) && fit.rms_after_mm >= 0),
           "the residual is finite");
 }

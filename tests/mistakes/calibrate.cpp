@@ -16,9 +16,9 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/dot_noise.hpp"
+#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fingerpad/calibrate/foam.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -89,9 +89,7 @@ Forces changed(const Change& change) {
 std::function<std::string()> normal(const Change& change) {
   return [=] {
     const Forces samples = changed(change);
-    return said([&] {
-      return fit_normal_force(std::span<const ForceSample<double>>(samples), {.rotated = true});
-    });
+    return said([&] { return fit_normal_force(std::span<const ForceSample<double>>(samples)); });
   };
 }
 std::function<std::string()> tangential(const Change& change) {
@@ -230,8 +228,6 @@ TEST_CASE("mistakes: forces by look-up", "[mistakes]") {
        }),
        "no displacement reaches 0.01"},
       {"rotation in degrees", moment([](auto& s) { s.rotation_rad *= 57.3; }),
-       "give rotations in rad"},
-      {"rotation in degrees", normal([](auto& s) { s.rotation_rad *= 57.3; }),
        "give rotations in rad"},
       {"moment in N m", moment([](auto& s) { s.moment_n_mm /= 1000; }), "give moments in N mm"},
       {"a bumped gauge",

@@ -101,28 +101,6 @@ void note_loads(const Calibrate& calibrate,
   }
 }
 
-// ---- normal force
-
-inline std::vector<std::string> other_plates(const std::string& scene) {
-  std::vector<std::string> plates = {"press", "drag", "twist", "mix"};
-  std::erase(plates, scene);
-  return plates;
-}
-
-/// Error of the normal force in N, with or without the compensation for displacement and rotation.
-inline auto normal_force_of(ContactMeasure measure, bool compensates) {
-  using namespace fingerpad;
-  return [=](const std::string& scene) {
-    const auto samples = load_samples(other_plates(scene), measure);
-    const auto fit =
-        fit_normal_force(std::span<const LoadSample>(samples),
-                         {.degree = 3, .displaced = compensates, .rotated = compensates});
-    return [force = NormalForce(fit.curve)](const LoadSample& s) {
-      return force(s.measure, s.displacement_mm, s.rotation_rad).force_n - s.normal_force_n;
-    };
-  };
-}
-
 // ---- shear
 
 inline std::vector<std::string> shear_calibration(const std::string& scene) {
@@ -156,15 +134,6 @@ inline std::vector<Effect> look_up_effects() {
     effects.push_back(e);
   };
   constexpr auto edge = ContactDotsOf::edge, center = ContactDotsOf::center;
-  for (const auto measure : {ContactMeasure::area, ContactMeasure::depth}) {
-    const std::string by = measure == ContactMeasure::area ? "by area" : "by depth";
-    add({.name = "compensation",
-         .quantity = "normal force " + by,
-         .unit = "N",
-         .on = "with `per_mm_sq` and `per_rad_sq`",
-         .off = "without them"},
-        measure, edge, edge, normal_force_of(measure, true), normal_force_of(measure, false));
-  }
   for (const auto measure : {ContactMeasure::area, ContactMeasure::depth}) {
     const std::string by = measure == ContactMeasure::area ? "by area" : "by depth";
     add({.name = "size of the contact",
