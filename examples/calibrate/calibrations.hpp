@@ -53,7 +53,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor, int max_radiu
 Outcome contact(const Path& recording, const Path& sensor);
 
 /// Noise of the dots, from free/, and the thresholds of slip that follow from it, to read.
-Outcome dots(const Path& recording);
+Outcome dots(const Path& recording, const Path& sensor);
 
 /// The rim, from side_dots.csv and signals.csv of the free pad at two or more pressures, or at one
 /// if the length is given.

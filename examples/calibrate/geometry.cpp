@@ -184,8 +184,9 @@ CameraEstimate estimate_camera(const std::array<const std::vector<PlateDot>*, 2>
         count += 2;
       }
     }
-    const auto change = fit.solution();
     const auto inverse = fit.inverse();
+    const LeastSquares<10>::Vector change = fit.solution();
+    double largest = 0;  // change in standard deviations
     best.residual_px = std::sqrt(residual_sq / count);
     best.p = p;
     for (std::size_t k = 0; k < p.size(); ++k) {
@@ -193,6 +194,10 @@ CameraEstimate estimate_camera(const std::array<const std::vector<PlateDot>*, 2>
       p[k] += change(i);
       best.sd[k] = is_held[k] ? std::numeric_limits<double>::quiet_NaN()
                               : best.residual_px * std::sqrt(inverse(i, i));
+      largest = std::fmax(largest, std::abs(change(i)) / best.sd[k]);
+    }
+    if (largest < 1e-3) {
+      break;
     }
   }
   return best;

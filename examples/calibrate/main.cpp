@@ -122,7 +122,7 @@ void add_light(CLI::App& app, Common& common, Arguments& given, std::function<Ou
 void add_dots(CLI::App& app, Common& common, std::function<Outcome()>& work) {
   add(
       app, common, "dots", "noise of the dots and thresholds of slip, from free/",
-      [&] { return calibrate::dots(common.recording); }, work);
+      [&] { return calibrate::dots(common.recording, common.sensor()); }, work);
 }
 
 void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {

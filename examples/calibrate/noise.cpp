@@ -17,12 +17,14 @@
 namespace calibrate {
 namespace {
 
-/// Tracks the dots through the pictures of a folder, from the first picture of free/.
+/// Tracks the dots through pictures.
 template <class Take>
-void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& take) {
+void follow(const fingerpad::DotFinder& finder,
+            const std::vector<cv::Mat>& pictures,
+            const Take& take) {
   auto state = finder.start();
   cv::Mat_<cv::Vec2d> dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
-  for (const cv::Mat& picture : read_pictures(folder)) {
+  for (const cv::Mat& picture : pictures) {
     if (!finder(picture, dots, state).ok()) {
       dots = cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
     }
@@ -32,14 +34,15 @@ void follow(const fingerpad::DotFinder& finder, const Path& folder, const Take& 
 
 }  // namespace
 
-Outcome dots(const Path& recording) {
-  const fingerpad::DotFinder finder(read_pictures(recording / "free").front());
+Outcome dots(const Path& recording, const Path& sensor_file) {
+  const auto pictures = read_pictures(recording / "free", known_pictures(sensor_file));
+  const fingerpad::DotFinder finder(pictures.front());
   if (!finder.ok()) {
     replay::fail(recording / "free", "the first image shows no grid of 9 or more dots");
   }
   std::vector<cv::Mat_<cv::Vec2d>> frames;
   Plot plot{"frame", "mean distance from frame 0 [px]", {}};
-  follow(finder, recording / "free", [&](const cv::Mat_<cv::Vec2d>& dots) {
+  follow(finder, pictures, [&](const cv::Mat_<cv::Vec2d>& dots) {
     frames.push_back(dots.clone());
     double sum = 0;
     int count = 0;

@@ -77,6 +77,11 @@ replay::Sensor known_sensor(const fs::path& file, const std::vector<std::string>
   return replay::read_sensor(file, content);
 }
 
+replay::PictureFormat known_pictures(const fs::path& file) {
+  const bool has_camera = fs::exists(file) && replay::parse_json(file).contains("camera");
+  return has_camera ? known_sensor(file, {"camera"}).pictures : replay::PictureFormat{};
+}
+
 std::vector<cv::Mat> read_pictures(const fs::path& folder, const replay::PictureFormat& format) {
   replay::FrameSource source = replay::FrameSource::of_folder(folder, format);
   std::vector<cv::Mat> pictures = {source.next()};

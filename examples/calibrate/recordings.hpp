@@ -19,6 +19,9 @@ using DepthMap = cv::Mat_<float>;
 replay::Sensor known_sensor(const std::filesystem::path& file,
                             const std::vector<std::string>& sections);
 
+/// How pictures are stored, by the camera of sensor.json if it has one. Throws replay::Failure.
+replay::PictureFormat known_pictures(const std::filesystem::path& file);
+
 /// Reads all pictures of a folder, sorted by name, all of the same size, as colours linear in
 /// light. Throws replay::Failure.
 std::vector<cv::Mat> read_pictures(const std::filesystem::path& folder,
