@@ -103,7 +103,7 @@ struct DotNoiseByScale {
       frames.push_back(dots);
     }
     const auto noise = dot_noise<S>(frames);
-    return {noise.noise_px, noise.slow_share, slip_threshold_for(noise.noise_px, S(0.02))};
+    return {noise.noise_px, noise.slow_share, noise.noise_error_px};
   }
 };
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Noise of dot positions, from frames of a pad at rest, and the threshold of slip that follows from
-// it. Source: "Method to decrease of data variation of dots" and "Selection of delta_0" of 003.
+// Noise of dot positions, from frames of a pad at rest, for StickOptions::noise. Source: "Method to
+// decrease of data variation of dots" and "Selection of delta_0" of 003.
 // Published is the noise relative to the central dot, which is that of two positions; here the mean
 // motion between two frames is subtracted instead (docs/errata.md, E037).
 #include <algorithm>
@@ -136,27 +136,6 @@ DotNoise<S> dot_noise(const Frames& frames_px) {
                     ? "the dots move slowly, unlike noise: check that the pad is at rest"
                     : nullptr;
   return noise;
-}
-
-// A dot is tested by the difference of its positions in two frames. With Gaussian noise of standard
-// deviation sigma per axis in each, its length is Rayleigh distributed:
-//   P(r > delta_0) = exp(-delta_0^2 / (4 sigma^2)).
-// The published delta_0 = 4 sigma is said to hold 95.44 % of the dots; it holds 98.17 % (E037).
-
-/// Probability that a sticking dot seems to move by more than `slip_px` between two frames; 0 for
-/// noise 0. noise_px >= 0 is sigma of one position, per axis, after denoising.
-template <scalar S>
-S false_slip_probability(const S& slip_px, const S& noise_px) {
-  using std::exp;
-  return exp(square(slip_px / noise_px) / S(-4));
-}
-
-/// delta_0 that a sticking dot exceeds with this probability, in (0, 1]; NaN for a probability > 1.
-template <scalar S>
-S slip_threshold_for(const S& noise_px, const S& probability) {
-  using std::log;
-  using std::sqrt;
-  return S(2) * noise_px * sqrt(S(0) - log(probability));  // not -0 for probability 1
 }
 
 }  // namespace v0
