@@ -91,6 +91,47 @@ TEST_CASE("published identification: depths that are one, and noise", "[publishe
   CHECK(std::abs(noisy->c_R / 0.029 - 1) > 0.1);
 }
 
+TEST_CASE("published identification: equations that contradict each other have no fluid",
+          "[published]") {
+  const Pad pad = printed_pad();
+  // in float the iteration stops where no step gains anything
+  const auto as_float = [](const Known& k) {
+    return published::KnownPixel<float>{float(k.k), float(k.h2_mm), float(k.depth_mm), float(k.b_R),
+                                        float(k.b_G)};
+  };
+  const Known at_12 = known(pad, 24, 28, 12), at_8 = known(pad, 24, 28, 8);
+  const Known at_5 = known(pad, 24, 28, 5);
+  for (const double error : {0.01, 0.1, 1.0}) {  // grey levels, at the same depth
+    CAPTURE(error);
+    const Known other = known(pad, 24, 28, 5, error);
+    CHECK_FALSE(published::identify_fluid(at_12, std::array{at_5, other, at_8}));
+    CHECK_FALSE(published::identify_fluid(
+        as_float(at_12), std::array{as_float(at_5), as_float(other), as_float(at_8)}));
+  }
+}
+
+TEST_CASE("published depth: sixteen halvings end at an odd multiple of 1 / 2^15 of the range",
+          "[published]") {
+  const auto is_odd = [](double multiple) { return std::abs(std::fmod(multiple, 2) - 1) < 1e-6; };
+  const Pad pad = printed_pad();
+  const auto o = pad.published();
+  CHECK(o.halvings == published::DepthOptions<double>().halvings);
+  const auto free = pad.free_depths();
+  const auto frame = pad.frame<double>(free), pressed = pad.frame<double>(pad.pressed_depths(3));
+  published::DepthEstimator<> estimate(o, frame.red, frame.green, free);
+  Image<double> depth(pad.rows, pad.cols);
+  REQUIRE(estimate(pressed.red, pressed.green, depth));
+  CHECK(std::all_of(depth.cells.begin(), depth.cells.end(), [&](double l) {
+    return std::isnan(l) || is_odd(std::ldexp(l / o.max_depth_mm, 15));
+  }));
+  for (const double depth_mm : {0.5, 3.0, 8.0, 13.0}) {
+    const Known k = known(pad, 24, 28, depth_mm);
+    const double l =
+        published::bisect(pad.published().fluid, k.k, k.h2_mm, pad.g(24, 28), k.b_R, k.b_G, 14.0);
+    CHECK(is_odd(std::ldexp(l / 14, 15)));
+  }
+}
+
 TEST_CASE("published depth: the free pad is found, where one height for all rays is the light's",
           "[published]") {
   const Pad pad = printed_pad();

@@ -204,6 +204,33 @@ TEST_CASE("published object motion: the contact reference dot") {
   }
 }
 
+TEST_CASE("published object motion: the displacement is that of the contact reference dot") {
+  const Dots free = small_grid();
+  const Flags contact(7, 7, 1);
+  const auto corner_moved = [&](const Vector& by) {
+    Dots dots = free;
+    for (Index k = 0; k < 9; ++k) {
+      dots(k / 3, k % 3) = dots(k / 3, k % 3) + by;
+    }
+    return dots;
+  };
+  published::ObjectMotion motion(free);
+  REQUIRE(motion(corner_moved({0, 0, -1}), contact).reference == DotIndex{1, 1});
+  const auto result = motion(corner_moved({0.3, 0.1, -1.2}), contact);
+  REQUIRE(result.ok());
+  CHECK(norm(result.displacement_mm - Vector{0.3, 0.1, -0.2}) < 1e-12);
+}
+
+TEST_CASE("published object motion: n_3 is the plain product of n_1 and n_2") {
+  Nine<double> sheared;  // rows and columns that meet at 60 degrees
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double col = static_cast<double>(k % 3), row = static_cast<double>(k / 3);
+    sheared[k] = {1.5 * (col + row / 2), 1.5 * std::sqrt(0.75) * row, 0};
+  }
+  const auto n = basis(sheared);
+  CHECK(norm(Vector{n.m[0][2], n.m[1][2], n.m[2][2]}) == Approx(std::sqrt(0.75)));
+}
+
 TEST_CASE("published object motion: a rolled ball, and what ends an object") {
   const test::RollingBall ball;
   test::Rolling roll(ball, -6, 1);

@@ -192,6 +192,23 @@ TEST_CASE("slides: when there is an answer", "[published]") {
   CHECK(first_answers(true) == std::array<Index, 2>{2, 5});
 }
 
+TEST_CASE("slides: a frame is stored by its distance from the newest stored one", "[published]") {
+  StickRatioOptions options;
+  options.moves_with_stick = options.follows_stick = false;
+  Printed ratio(9, 9, options);
+  const ContactFlags all(9, 9, 1);
+  const auto moved = [](double by) {
+    return grid_of([=](Index, Index) { return Point2<double>{by, 0}; });
+  };
+  // out, back to the first place, and out again: the reference is the frame in the first place
+  for (const double by : {0.0, 4.0, 0.0}) {
+    (void)ratio(moved(by), all);
+  }
+  const published::StickRatioResult<> out = ratio(moved(4), all);
+  CHECK(out.ok());
+  CHECK(out.reference_age == 1);
+}
+
 TEST_CASE("slides: the reference dot is one of the stick region", "[published]") {
   // the columns on both sides and the dot in the middle stick; the others stay behind
   const auto sticks = [](Index i, Index j) { return j < 3 || j > 5 || (i == 4 && j == 4); };
