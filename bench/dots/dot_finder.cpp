@@ -14,6 +14,7 @@
 
 #include "bench/support/run.hpp"
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots/dot_follower.hpp"
 #include "support/printed_dots.hpp"
 
 using namespace fingerpad;
@@ -78,6 +79,16 @@ void add_finder(const std::string& name, const Frames& frames, const DotFinderOp
   });
 }
 
+void add_follower(const std::string& group, const Frames& frames) {
+  const bench::Memory memory;
+  const auto follower = std::make_shared<DotFollower>(
+      channel<const unsigned char>(frames.frames[0], 1), frames.truth[0],
+      DotFollowerOptions{.radius_px = frames.print.radius_px});
+  add(group + "/DotFollower", frames, memory.bytes(), [=](const cv::Mat& frame, DotPlaces& dots) {
+    benchmark::DoNotOptimize((*follower)(channel<const unsigned char>(frame, 1), dots));
+  });
+}
+
 /// OpenCV's detector of circle grids: it has no memory and needs every dot to be visible.
 void add_circles_grid(const std::string& group, const Frames& frames) {
   add(group + "/cv::findCirclesGrid", frames, 0, [&](const cv::Mat& frame, DotPlaces& dots) {
@@ -130,6 +141,7 @@ void add_all(const std::string& group, const Frames& frames) {
   add_finder(group + "/DotFinder, the default", frames, options);
   options.color_weights = {0, 1, 1};
   add_finder(group + "/DotFinder, two channels", frames, options);
+  add_follower(group, frames);
   add_components(group, frames);
   add_circles_grid(group, frames);
   bench::add_streaming(group);

@@ -1,0 +1,448 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The center of one printed disc in a picture: least squares of light, contrast and center against
+// the picture of the disc seen through a map of second order, edge blurred. A centroid is drawn
+// aside by the map's second derivative and by uneven light; both are in the picture here.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
+#include "fingerpad/image/detail/lanes.hpp"
+#include "fingerpad/image/detail/quick_math.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Where a point (a, b) of the disc, in radii, is seen:
+/// center + a ja + b jb + (a^2 qaa + 2 a b qab + b^2 qbb) / 2, in px.
+struct DiscMap {
+  Point2<double> ja, jb;
+  Point2<double> qaa = {0, 0}, qab = {0, 0}, qbb = {0, 0};
+};
+
+/// a^2 + b^2 - 1 as a polynomial of third order in the offset (x, y) from the center, px: the
+/// inverse of the map, whose terms beyond the third order are left out.
+struct DiscRim {
+  explicit DiscRim(const DiscMap& map) {
+    const double det = map.ja.x * map.jb.y - map.jb.x * map.ja.y;
+    const double ax = map.jb.y / det, ay = -map.jb.x / det;
+    const double bx = -map.ja.y / det, by = map.ja.x / det;
+    xx = ax * ax + bx * bx;
+    xy = 2 * (ax * ay + bx * by);
+    yy = ay * ay + by * by;
+    const auto a_of = [&](const Point2<double>& q) { return ax * q.x + ay * q.y; };
+    const auto b_of = [&](const Point2<double>& q) { return bx * q.x + by * q.y; };
+    const double aaa = a_of(map.qaa), aab = 2 * a_of(map.qab) + b_of(map.qaa);
+    const double abb = a_of(map.qbb) + 2 * b_of(map.qab), bbb = b_of(map.qbb);
+    // aaa a^3 + aab a^2 b + abb a b^2 + bbb b^3 with a = ax x + ay y, b = bx x + by y
+    xxx = -(aaa * ax * ax * ax + aab * ax * ax * bx + abb * ax * bx * bx + bbb * bx * bx * bx);
+    xxy = -(3 * aaa * ax * ax * ay + aab * (ax * ax * by + 2 * ax * ay * bx) +
+            abb * (bx * bx * ay + 2 * bx * by * ax) + 3 * bbb * bx * bx * by);
+    xyy = -(3 * aaa * ax * ay * ay + aab * (ay * ay * bx + 2 * ax * ay * by) +
+            abb * (by * by * ax + 2 * bx * by * ay) + 3 * bbb * bx * by * by);
+    yyy = -(aaa * ay * ay * ay + aab * ay * ay * by + abb * ay * by * by + bbb * by * by * by);
+  }
+  double xx, xy, yy, xxx, xxy, xyy, yyy;
+};
+
+struct DiscFit {
+  bool good = false;
+  Point2<double> center = {0, 0};
+  Point2<double> sd_px = {0, 0};
+  double light = 0;     ///< grey levels of the print's background at the center
+  double contrast = 0;  ///< share of the light that the disc takes; negative: a bright disc
+  double residual = 0;  ///< rms, grey levels
+  Point2<double> slope = {0, 0};  ///< relative change of the light per px
+};
+
+/// Reads windows of one image of any type; one object a thread.
+class DotLocator {
+ public:
+  static constexpr int side = 64;  ///< largest window, px
+  /// The window reaches this far beyond the blurred edge, px.
+  static constexpr double around_px = 1.6;
+
+  DotLocator() : cells_(std::size_t(side) * side) {}
+
+  /// One step of Gauss and Newton from `center`.
+  template <class View>
+  DiscFit step(const View& image,
+               const Point2<double>& center,
+               const DiscMap& map,
+               double edge_px,
+               const Point2<double>& slope) {
+    DiscFit fit;
+    if (!load(image, center, map, edge_px)) {
+      return fit;
+    }
+    RowSums sums{};
+    const DiscRim rim(map);
+    std::array<Line, side> lines;
+    for (Index i = 0; i < rows_; ++i) {
+      lines[std::size_t(i)] = line(rim, double(y0_ + i) - center.y, slope);
+    }
+    for (Index j = 0; j < stride_; j += step_) {
+      add<Row>(lines, center.x, j, float(edge_px), sums);
+    }
+    return solve(summed(sums), center);
+  }
+
+  /// Repeats steps until the last is short enough: errors of a step are of its third power.
+  template <class View>
+  DiscFit find(const View& image,
+               Point2<double> guess,
+               const DiscMap& map,
+               double edge_px,
+               Point2<double> slope) {
+    constexpr int most = 5;
+    constexpr double short_px = 0.15, longest_px = 1.5;
+    DiscFit fit;
+    for (int k = 0; k < most; ++k) {
+      fit = step(image, guess, map, edge_px, slope);
+      if (!fit.good) {
+        return fit;
+      }
+      const Point2<double> move = fit.center - guess;
+      const double length = norm(move);
+      slope = fit.slope;
+      if (length < short_px) {
+        return fit;
+      }
+      guess += (std::min)(1.0, longest_px / length) * move;
+    }
+    fit.good = false;
+    return fit;
+  }
+
+  /// Loads the window around a center; false if it is not inside the image or too large.
+  template <class View>
+  bool load(const View& image, const Point2<double>& center, const DiscMap& map, double edge_px) {
+    const double beyond = edge_px + around_px;
+    const double half_x = std::hypot(map.ja.x, map.jb.x) + beyond;
+    const double half_y = std::hypot(map.ja.y, map.jb.y) + beyond;
+    const double left = std::ceil(center.x - half_x), top = std::ceil(center.y - half_y);
+    const double right = std::floor(center.x + half_x), bottom = std::floor(center.y + half_y);
+    if (!(left >= 0 && top >= 0 && right < double(image.cols()) && bottom < double(image.rows())) ||
+        right - left >= side - 16 || bottom - top >= side - 16) {
+      return false;
+    }
+    x0_ = Index(left);
+    y0_ = Index(top);
+    cols_ = Index(right) - x0_ + 1;
+    rows_ = Index(bottom) - y0_ + 1;
+    step_ = lanes_in<Row, float>;
+    stride_ = (cols_ + step_ - 1) / step_ * step_;
+    base_ = float(image(y0_, x0_));
+    for (Index i = 0; i < rows_; ++i) {
+      float* const to = cells_.data() + i * stride_;
+      for (Index j = 0; j < cols_; ++j) {
+        to[j] = float(image(y0_ + i, x0_ + j)) - base_;
+      }
+      std::fill(to + cols_, to + stride_, 0.0F);
+    }
+    return true;
+  }
+
+  /// Fits shape and blur of the edge as well, for a disc that is still: `map` is improved by a
+  /// stretch of its own, `edge_px` only if it is free.
+  template <class View>
+  DiscFit fit_shape(
+      const View& image, Point2<double> center, DiscMap& map, double& edge_px, bool free_edge) {
+    constexpr int rounds = 12;
+    constexpr std::size_t n = 10;
+    DiscFit fit;
+    Point2<double> slope{0, 0};
+    for (int round = 0; round < rounds; ++round) {
+      if (!load(image, center, map, edge_px)) {
+        return {};
+      }
+      const DiscRim rim(map);
+      ProductSums<double, n + 1> sums;
+      for (Index i = 0; i < rows_; ++i) {
+        const double y = double(y0_ + i) - center.y;
+        const Line l = line(rim, y, slope);
+        for (Index j = 0; j < cols_; ++j) {
+          const double x = double(x0_ + j) - center.x;
+          const Edge<float> e = edge<float>(l, float(x), float(edge_px));
+          if (e.inside != 0) {
+            const double hx = double(e.hx), hy = double(e.hy);
+            sums.add({1, x, y, -double(e.disc), hx, hy, hx * x, hx * y + hy * x, hy * y,
+                      double(e.wider), double(cells_[std::size_t(i * stride_ + j)])});
+          }
+        }
+      }
+      SmallMatrix<double, n> a = sums.corner<n>();
+      if (!free_edge) {
+        for (std::size_t k = 0; k < n; ++k) {
+          a[n - 1][k] = a[k][n - 1] = k == n - 1 ? 1 : 0;
+        }
+      }
+      std::array<double, n> b = sums.column<n>(n);
+      b[n - 1] = free_edge ? b[n - 1] : 0;
+      const NormalEquations<double, n> normal(a);
+      if (!normal.good) {
+        return {};
+      }
+      const std::array<double, n> p = normal.solve(b);
+      const double light = p[0] + double(base_);
+      double square = sums(n, n);
+      for (std::size_t k = 0; k < n; ++k) {
+        square -= p[k] * b[k];
+      }
+      fit.light = light;
+      fit.contrast = p[3] / light;
+      fit.slope = slope = {p[1] / light, p[2] / light};
+      fit.residual = std::sqrt((std::max)(square, 0.0) / (std::max)(sums(0, 0) - n, 1.0));
+      const auto held = [](double v, double most) { return (std::clamp)(v, -most, most); };
+      const Point2<double> move{held(p[4] / p[3], 1.0), held(p[5] / p[3], 1.0)};
+      const double sxx = held(p[6] / p[3], 0.2), sxy = held(p[7] / p[3], 0.2),
+                   syy = held(p[8] / p[3], 0.2);
+      const auto stretched = [&](const Point2<double>& v) {
+        return Point2<double>{v.x + sxx * v.x + sxy * v.y, v.y + sxy * v.x + syy * v.y};
+      };
+      center += move;
+      map.ja = stretched(map.ja);
+      map.jb = stretched(map.jb);
+      if (free_edge) {
+        edge_px = (std::clamp)(edge_px + held(p[9] / p[3], 0.5), 0.6, 8.0);
+      }
+      fit.center = center;
+      fit.good = norm(move) < 0.02 && std::fabs(sxx) + std::fabs(sxy) + std::fabs(syy) < 0.01;
+      if (fit.good) {
+        return fit;
+      }
+    }
+    return fit;
+  }
+
+ private:
+  using Row = lanes<float, row_lanes<float>>;
+  static constexpr int terms = 28;
+  using Sums = std::array<double, terms>;
+  using RowSums = std::array<Row, terms>;
+
+  template <class V>
+  struct Edge {
+    V inside;  ///< 1 in the window, else 0
+    V disc;    ///< 1 in the disc, 0 outside, times the light's slope
+    V hx, hy;  ///< derivatives of `disc` by x and y
+    V wider;   ///< derivative of -`disc` by the width of the edge
+  };
+
+  /// A row of the picture: coefficients of powers of x.
+  struct Line {
+    float y, a0, a1, a2, a3;  ///< distance from the center, in radii, squared
+    float b0, b1, b2;         ///< its derivative by y
+    float light, light_x;     ///< relative to that at the center
+  };
+  static Line line(const DiscRim& r, double y, const Point2<double>& slope) {
+    return {float(y),
+            float(y * y * (r.yy + r.yyy * y)),
+            float(y * (r.xy + r.xyy * y)),
+            float(r.xx + r.xxy * y),
+            float(r.xxx),
+            float(y * (2 * r.yy + 3 * r.yyy * y)),
+            float(r.xy + 2 * r.xyy * y),
+            float(r.xxy),
+            float(1 + slope.y * y),
+            float(slope.x)};
+  }
+
+  /// The picture of the disc at offsets x from its center.
+  template <class V>
+  [[gnu::always_inline]] static Edge<V> edge(const Line& l, const V& x, float width) {
+    const V tiny = V{} + 1e-6F, one = V{} + 1.0F;
+    V square = ((l.a3 * x + l.a2) * x + l.a1) * x + l.a0;
+    square = square > tiny ? square : tiny;
+    const V fx = (3 * l.a3 * x + 2 * l.a2) * x + l.a1;
+    const V fy = (l.b2 * x + l.b1) * x + l.b0;
+    const V inverse = inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
+    // distance from the edge, in its widths
+    const V t = (square - square * inverse_sqrt<V>(square)) * inverse * (2.0F / width);
+    const V above = t > -one ? t : -one;
+    const V u = above < one ? above : one;
+    const V uu = u * u, gap = one - uu;
+    const V light = l.light_x * x + l.light;
+    const V bell = (0.9375F / width) * light * gap * gap;
+    const V steep = bell * inverse;
+    return {t < V{} + (1.0F + float(around_px) / width) ? one : V{},
+            light * (0.5F - u * (0.9375F - uu * (0.625F - 0.1875F * uu))), -steep * fx, -steep * fy,
+            -bell * u};
+  }
+
+  template <class V>
+  [[gnu::always_inline]] void add(const std::array<Line, side>& lines,
+                                  double center_x,
+                                  Index j,
+                                  float width,
+                                  RowSums& to) const {
+    alignas(64) std::array<float, 16> ramp{};
+    for (std::size_t k = 0; k < ramp.size(); ++k) {
+      ramp[k] = float(double(x0_ + j + Index(k)) - center_x);
+    }
+    const V x = load_cells<V>(ramp.data());
+    // In two rounds: all 21 sums at once would not fit into the registers of most machines.
+    std::array<V, side> ins, discs, hxs, hys, vs;
+    std::array<float, side> ys;
+    std::size_t n = 0;
+    for (Index i = 0; i < rows_; ++i) {
+      const Line& l = lines[std::size_t(i)];
+      const Edge<V> e = edge<V>(l, x, width);
+      ys[n] = l.y;
+      vs[n] = load_cells<V>(cells_.data() + i * stride_ + j);
+      ins[n] = e.inside;
+      discs[n] = e.disc;
+      hxs[n] = e.hx;
+      hys[n] = e.hy;
+      n += std::size_t(any_lane(e.inside > V{}) ? 1 : 0);
+    }
+    V s0{}, s1{}, s2{}, s3{}, s4{}, s5{}, s6{}, s7{}, s8{}, s9{};
+    for (std::size_t i = 0; i < n; ++i) {
+      const float y = ys[i];
+      const V in = ins[i], iny = in * y, v = vs[i] * in, disc = discs[i];
+      s0 += in;
+      s1 += iny;
+      s2 += iny * y;
+      s3 += v;
+      s4 += v * y;
+      s5 += v * v;
+      s6 += disc;
+      s7 += disc * y;
+      s8 += disc * disc;
+      s9 += disc * v;
+    }
+    V s10{}, s11{}, s12{}, s13{}, s14{}, s15{}, s16{}, s17{}, s18{}, s19{}, s20{};
+    for (std::size_t i = 0; i < n; ++i) {
+      const float y = ys[i];
+      const V hx = hxs[i], hy = hys[i], disc = discs[i], v = vs[i];
+      s10 += hx;
+      s11 += hx * y;
+      s12 += hy;
+      s13 += hy * y;
+      s14 += disc * hx;
+      s15 += disc * hy;
+      s16 += hx * hx;
+      s17 += hx * hy;
+      s18 += hy * hy;
+      s19 += hx * v;
+      s20 += hy * v;
+    }
+    const std::array<V, terms> all = {s0,
+                                      s1,
+                                      s2,
+                                      s3,
+                                      s4,
+                                      s5,
+                                      s6,
+                                      s7,
+                                      s8,
+                                      s9,
+                                      s10,
+                                      s11,
+                                      s12,
+                                      s13,
+                                      s14,
+                                      s15,
+                                      s16,
+                                      s17,
+                                      s18,
+                                      s19,
+                                      s20,
+                                      V(s0 * x),
+                                      V(s0 * x * x),
+                                      V(s1 * x),
+                                      V(s3 * x),
+                                      V(s6 * x),
+                                      V(s10 * x),
+                                      V(s12 * x)};
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      to[k] += all[k];
+    }
+  }
+
+  /// The sum of the lanes, by halves.
+  template <class V>
+  [[gnu::always_inline]] static float sum(const V& v) {
+    if constexpr (scalar<V>) {
+      return v;
+    } else if constexpr (lanes_in<V, float> == 4) {
+      return (v[0] + v[2]) + (v[1] + v[3]);
+    } else {
+      using Half = lanes<float, lanes_in<V, float> / 2>;
+      const char* bytes = reinterpret_cast<const char*>(&v);
+      return sum(Half(detail::load<Half>(bytes) + detail::load<Half>(bytes + sizeof(Half))));
+    }
+  }
+  static Sums summed(const RowSums& rows) {
+    Sums sums;
+    for (std::size_t k = 0; k < terms; ++k) {
+      sums[k] = double(sum(rows[k]));
+    }
+    return sums;
+  }
+
+  DiscFit solve(const Sums& s, const Point2<double>& center) const {
+    // Unknowns: light and its two slopes, contrast, contrast times the two steps. L D L^T, in which
+    // the steps come last, so that their variances are in its last two rows.
+    double a[6][6] = {{s[0]},
+                      {s[21], s[22]},
+                      {s[1], s[23], s[2]},
+                      {-s[6], -s[25], -s[7], s[8]},
+                      {s[10], s[26], s[11], -s[14], s[16]},
+                      {s[12], s[27], s[13], -s[15], s[17], s[18]}};
+    double p[6] = {s[3], s[24], s[4], -s[9], s[19], s[20]};
+    double inverse[6];  // of D
+    double square = s[5];
+    DiscFit fit;
+    for (int i = 0; i < 6; ++i) {
+      double row[6];  // of L D
+      double rest = a[i][i];
+      for (int j = 0; j < i; ++j) {
+        row[j] = a[i][j];
+        for (int k = 0; k < j; ++k) {
+          row[j] -= row[k] * a[j][k];
+        }
+        a[i][j] = row[j] * inverse[j];
+        rest -= row[j] * a[i][j];
+        p[i] -= a[i][j] * p[j];
+      }
+      if (!(rest > 1e-4 * a[i][i])) {
+        return fit;
+      }
+      inverse[i] = 1 / rest;
+      square -= p[i] * p[i] * inverse[i];
+    }
+    for (int i = 5; i >= 0; --i) {
+      p[i] *= inverse[i];
+      for (int k = i + 1; k < 6; ++k) {
+        p[i] -= a[k][i] * p[k];
+      }
+    }
+    fit.light = p[0] + double(base_);
+    fit.contrast = p[3] / fit.light;
+    fit.slope = {p[1] / fit.light, p[2] / fit.light};
+    fit.residual = std::sqrt((std::max)(square, 0.0) / (std::max)(s[0] - 6, 1.0));
+    fit.center = center + Point2<double>{p[4] / p[3], p[5] / p[3]};
+    const double scale = fit.residual / std::fabs(p[3]);
+    fit.sd_px = {scale * std::sqrt(inverse[4] + a[5][4] * a[5][4] * inverse[5]),
+                 scale * std::sqrt(inverse[5])};
+    fit.good = is_finite(fit.center);
+    return fit;
+  }
+
+  std::vector<float> cells_;
+  Index x0_ = 0, y0_ = 0, rows_ = 0, cols_ = 0, stride_ = 0, step_ = 1;
+  float base_ = 0;
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
