@@ -353,6 +353,15 @@ const std::vector<Mistake> mistakes = {
            [](cv::Mat& f) { f(cv::Rect(150, 150, 100, 100)).setTo(cv::Scalar::all(255)); });
      },
      "of the pad is saturated"},
+    {"compressed frames",
+     [](const Copy& c) {
+       c.edit_frames([](cv::Mat& f) {
+         std::vector<uchar> bytes;
+         cv::imencode(".jpg", f, bytes, {cv::IMWRITE_JPEG_QUALITY, 95});
+         f = cv::imdecode(bytes, cv::IMREAD_COLOR);
+       });
+     },
+     "the pictures were compressed"},
     {"frames too dark", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f /= 16; }); },
      "the pad is too dark"},
     {"a lamp that has changed", [](const Copy& c) { c.edit_frames([](cv::Mat& f) { f *= 0.9; }); },
