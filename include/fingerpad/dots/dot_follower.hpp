@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -70,7 +71,8 @@ class DotFollower {
         options_(options),
         marks_(std::size_t((rows_ + 2 * margin) * wide_)),
         sd_px_(std::size_t(rows_ * cols_), not_a_number<double>()),
-        todo_(marks_.size()) {
+        todo_(marks_.size()),
+        residuals_(marks_.size()) {
     require(options);
     learn(as_view(free_image), free_px);
     expects(order_.size() >= 9, "DotFollower", "dots found at free_px",
@@ -130,13 +132,15 @@ class DotFollower {
     bool visited = false;
     Point last = missing(), velocity = {0, 0};
     Point place = missing();  ///< expected, then found
-    Point news = {0, 0};      ///< place less what was expected
+    Point expected = missing();
+    Point news = {0, 0};  ///< place less what was expected
     // The disc: an ellipse in the lattice (axes a, b in pitches), and by how much its map's second
     // derivatives differ from the lattice's.
     Point a = {0, 0}, b = {0, 0}, aa = {0, 0}, ab = {0, 0}, bb = {0, 0};
     Point slope = {0, 0};
     double contrast = 0, residual = 0;  ///< on the free pad, as a share of light and of contrast
     double light = 0;
+    double residual_ratio = 0;          ///< in this frame, to that on the free pad
     double sd_px = 0, surprise_px = 0;  ///< in this frame; distance from where it was expected
   };
 
@@ -320,11 +324,15 @@ class DotFollower {
   template <class View, class Dots>
   DotFollowerResult look(const View& image, Dots& dots_px) {
     for (const Index k : order_) {
+      at(k).expected = at(k).place;
       at(k).visited = at(k).found = false;
       at(k).news = {0, 0};
     }
     // The lost are tried again beside those found; from the third round on with a wide look.
     constexpr int rounds = 5;
+    if (noise_ == 0) {
+      learn_noise(image);
+    }
     bool lost = true;
     for (int round = 0; round < rounds && lost; ++round) {
       lost = false;
@@ -347,6 +355,35 @@ class DotFollower {
     return finish(image, dots_px);
   }
 
+  /// How much noisier the frames are than the picture of the free pad, which may be a mean of many:
+  /// from the dots near where they are expected.
+  template <class View>
+  void learn_noise(const View& image) {
+    noise_ = (std::numeric_limits<double>::infinity)();
+    for (const Index k : order_) {
+      (void)locate(image, k, false);
+    }
+    keep_noise();
+    for (const Index k : order_) {
+      Mark& m = at(k);
+      m.place = m.expected;
+      m.news = {0, 0};
+      m.visited = m.found = false;
+    }
+  }
+  /// Half of the dots are needed.
+  void keep_noise() {
+    std::size_t count = 0;
+    for (const Index k : order_) {
+      if (at(k).found) {
+        residuals_[count++] = at(k).residual_ratio;
+      }
+    }
+    const auto first = residuals_.begin(), middle = first + std::ptrdiff_t(count / 2);
+    std::nth_element(first, middle, first + std::ptrdiff_t(count));
+    noise_ = 2 * count >= order_.size() ? (std::max)(*middle, 1.0) : 0;
+  }
+
   /// Looks for dot k where its place and its news put it.
   template <class View>
   bool locate(const View& image, Index k, bool wide) {
@@ -361,10 +398,10 @@ class DotFollower {
     const Point start = wide ? darkest(image, m, guess, reach) : guess;
     const detail::DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
     const double contrast = fit.contrast / m.contrast;
-    const double residual = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
+    m.residual_ratio = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
     m.surprise_px = norm(fit.center - guess);
     m.found = fit.good && contrast > least_contrast && contrast < most_contrast &&
-              residual < most_residual && m.surprise_px < reach;
+              m.residual_ratio < most_residual * noise_ && m.surprise_px < reach;
     if (m.found) {
       m.news = m.news + (fit.center - guess);
       m.slope = fit.slope;
@@ -470,6 +507,9 @@ class DotFollower {
     }
     const bool good = double(result.found) >= (1 - options_.max_lost) * double(result.expected) &&
                       double(strange) <= max_strange * double(beyond_.size());
+    if (good) {
+      keep_noise();
+    }
     result.status = good ? DotFollowerStatus::ok : DotFollowerStatus::lost;
     for (const Index k : order_) {
       Mark& m = at(k);
@@ -494,6 +534,7 @@ class DotFollower {
     return result;
   }
 
+  double noise_ = 0;  ///< residuals of the frames to that of the free pad's picture; 0: unknown
   static constexpr double max_off = 0.45;     ///< pitches
   static constexpr double bias_px = 0.01;     ///< rms of the centers in pictures without noise
   static constexpr double max_strange = 0.1;  ///< of the places beyond the border
@@ -504,6 +545,7 @@ class DotFollower {
   std::vector<Mark> marks_;
   std::vector<double> sd_px_;
   std::vector<Index> todo_;
+  std::vector<double> residuals_;
   std::vector<Beyond> beyond_;
   std::vector<Index> order_;  ///< the dots of the free pad, border first
   detail::DotLocator locator_;
