@@ -85,12 +85,9 @@ TEST_CASE("functions of dual numbers have the derivatives of calculus", "[dual]"
     follows(-x, -at, -1);
     follows(abs(x), std::abs(at), at < 0 ? -1 : 1);
     follows(exp(x), std::exp(at), std::exp(at));
-    follows(expm1(x), std::expm1(at), std::exp(at));
-    follows(log1p(x), std::log1p(at), 1 / (1 + at));
     follows(sin(x), std::sin(at), std::cos(at));
     follows(cos(x), std::cos(at), -std::sin(at));
     follows(tan(x), std::tan(at), 1 / (std::cos(at) * std::cos(at)));
-    follows(asin(x), std::asin(at), 1 / std::sqrt(1 - at * at));
     follows(acos(x), std::acos(at), -1 / std::sqrt(1 - at * at));
     follows(atan(x), std::atan(at), 1 / (1 + at * at));
     follows(2 * x * x, 2 * at * at, 4 * at);
