@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Uses a fingertip as one object that turns frames into touch. Without free dots and side dots in
-// the options their stages do not exist. Usage: 16_fingertip [RECORDING]
+// Uses a fingertip as one object that turns frames into touch. Without free dots in the
+// options their stages do not exist. Usage: 16_fingertip [RECORDING]
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>

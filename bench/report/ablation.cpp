@@ -6,9 +6,8 @@
 //   images  ablation/membranes.hpp, used by ablation/depth.hpp and ablation/contact.hpp
 //   dots    ablation/dots.hpp for the stick ratio, ablation/slip.hpp for the same in space and with
 //           friction, ablation/motion.hpp for the motion of the object
-//   forces  ablation/wrench.hpp from the membrane's balance; ablation/loads.hpp by look-up, with
-//   the
-//           shift of the contact, traction and the shape of the object
+//   forces  ablation/loads.hpp by look-up, with the shift of the contact, traction and the shape of
+//           the object
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -23,7 +22,6 @@
 #include "ablation/motion.hpp"
 #include "ablation/slip.hpp"
 #include "ablation/table.hpp"
-#include "ablation/wrench.hpp"
 
 namespace {
 
@@ -60,7 +58,6 @@ int main(int argc, char** argv) {
   append(effects, stick_effects());
   append(effects, slip_effects());
   append(effects, motion_effects());
-  append(effects, wrench_effects());
   append(effects, load_effects());
   std::cout << "Median of the errors, with the effect / without it:\n\n";
   print_table(std::cout, effects, 0.5);

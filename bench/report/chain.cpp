@@ -72,10 +72,8 @@ double frame_ms(Fingertip fingertip, const chain::PressedFrames& frames, int cou
 
 /// What each stage adds to the time of a frame.
 ordered_json stages_of(FingertipOptions options, const chain::PressedFrames& frames, int count) {
-  std::array<double, 5> ms;  // of a frame with one stage more each
+  std::array<double, 4> ms;  // of a frame with one stage more each
   const auto time = [&] { return frame_ms(Fingertip(options), frames, count); };
-  ms[4] = time();
-  options.rim_mm = {};
   ms[3] = time();
   options.force_of_area = options.force_of_depth = {};
   options.shear = {};
@@ -88,9 +86,8 @@ ordered_json stages_of(FingertipOptions options, const chain::PressedFrames& fra
            {{"smoothing, depth", ms[0]},
             {"contact region", ms[1] - ms[0]},
             {"stick ratio, object motion", ms[2] - ms[1]},
-            {"look-up forces", ms[3] - ms[2]},
-            {"six-axis force", ms[4] - ms[3]}}},
-          {"whole_ms", ms[4]}};
+            {"look-up forces", ms[3] - ms[2]}}},
+          {"whole_ms", ms[3]}};
 }
 
 /// What a copy costs, in bytes and in ms: a new one, and one into memory that is there.
@@ -182,7 +179,6 @@ ordered_json errors_of(Fingertip chain, const chain::PressedFrames& frames) {
       }
     }
     const double degrees = 180 / std::numbers::pi;
-    const double f_z = std::abs(f.wrench.force_n.z);
     errors.add("contact area", "share", r.contact.area_mm2 / f.contact_area_mm2() - 1);
     errors.add("contact depth", "mm", r.contact.depth_mm - (13 - f.membrane.height(0)));
     errors.add("object's turn", "deg",
@@ -193,11 +189,6 @@ ordered_json errors_of(Fingertip chain, const chain::PressedFrames& frames) {
     }
     errors.add("normal force by look-up", "N",
                r.normal.force_n - chain::pressure_mpa * f.contact_area_mm2());
-    errors.add("F_x, F_y", "N",
-               std::hypot(r.wrench.force_n.x - f.wrench.force_n.x,
-                          r.wrench.force_n.y - f.wrench.force_n.y));
-    errors.add("F_z", "share", (r.wrench.force_n.z - f.wrench.force_n.z) / f_z);
-    errors.add("M_z", "N mm", r.wrench.moment_n_mm.z - f.wrench.moment_n_mm.z);
   }
   return errors.summary();
 }

@@ -83,16 +83,12 @@ const chain::PressedFrames& pressed() {
   return frames;
 }
 
-/// The chain on pressed frames, on noise, and on pressed frames with random dots and side dots.
+/// The chain on pressed frames, on noise, and on pressed frames with random dots.
 std::vector<Kind> of_chain(Fingertip& fingertip) {
   static const auto frames =
       made<test::Frame<std::uint8_t>>([](int, test::Random& r) { return noise_frame(r); });
-  const Index side_dots = pressed()[0].side_dots_mm.cols();
   static const auto dots = made<Image<Point2<double>>>(
       [](int, test::Random& r) { return scattered<Point2<double>>(21, 21, 0, 600, r); });
-  static const auto side = made<Image<Point3<double>>>([side_dots](int, test::Random& r) {
-    return scattered<Point3<double>>(1, side_dots, -20, 20, r);
-  });
   return {
       {"a pressed pad", [&](int k) { (void)touch_of(fingertip, pressed()[variant(k)].view()); }},
       {"an image of noise",
@@ -102,10 +98,9 @@ std::vector<Kind> of_chain(Fingertip& fingertip) {
          in.green = as_view(frames[variant(k)].green);
          (void)touch_of(fingertip, in);
        }},
-      {"dots and side dots anywhere", [&](int k) {
+      {"dots anywhere", [&](int k) {
          auto in = pressed()[variant(k)].view();
          in.dots_px = as_view(dots[variant(k)]);
-         in.side_dots_mm = as_view(side[variant(k)]);
          (void)touch_of(fingertip, in);
        }}};
 }

@@ -93,15 +93,11 @@ class VirtualPad {
         dots_px_(static_cast<std::size_t>(dots_across * dots_across)),
         shift_mm_(dots_px_.size()),
         dots_(dots_across, static_cast<Index>(dot_numbers) * dots_across),
-        section_(size_px, 3),
-        rim_(1, Rim::count) {
+        section_(size_px, 3) {
     for (Index k = 0; k < size_px * size_px; ++k) {
       rgba_.at(4 * k + 3) = 255;
     }
     place_dots();
-    for (Index k = 0; k < Rim::count; ++k) {
-      rim_.at(k) = Rim::border(k);
-    }
     expose(0);
     tip_ = std::make_unique<fingerpad::Fingertip>(options());
     measure(0);
@@ -153,10 +149,29 @@ class VirtualPad {
     o.contact.free_apex_mm = membrane_.film.free_top_mm();
     o.free_dots_mm = home_.view();
     o.stick.noise = dot_noise_px * view_.camera.pitch_mm;
-    o.rim_mm = rim_.view();
-    o.wrench.base_radius_mm = rim_mm;
-    o.wrench.side_dot_length_mm = Rim::side_dot_mm;
+    look_up_forces(o);
     return o;
+  }
+
+  /// The curves that presses and drags of this film by a plate would give.
+  static void look_up_forces(Options& o) {
+    Film film;
+    std::array<double, 3> area_mm2{}, force_n{};
+    double stiffness = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      film.press(0.5 + 0.75 * static_cast<double>(k), 0);
+      area_mm2[k] = pi * film.contact_mm() * film.contact_mm();
+      force_n[k] = film.normal_n();
+      stiffness += Grip::stiffness_n_per_mm(film) / 3;
+    }
+    // c_1 S + c_2 S^2 through the first and the last
+    const double low = force_n[0] / area_mm2[0], high = force_n[2] / area_mm2[2];
+    const double c2 = (high - low) / (area_mm2[2] - area_mm2[0]), c1 = low - c2 * area_mm2[0];
+    o.force_of_area.emplace(fingerpad::ForceCurve<>{{0, c1, c2}, 3, 500, 0, 0, 0.05});
+    // the lever of a torque is 2/3 of the contact's radius
+    const double turning = stiffness * 4 / (9 * pi) * 100;
+    o.shear.emplace(
+        fingerpad::ShearMap<>{100, {{stiffness, 0, 0, 0}, 0, 5}, {{turning, 0, 0, 0}, 1, 2}});
   }
 
   void move(const Object& object, double time_s) {
@@ -206,11 +221,9 @@ class VirtualPad {
     const fingerpad::StridedView<const Point2<double>> dots(dots_px_.data(), dots_across,
                                                             dots_across, dots_across);
     rim_pull_.pull(membrane_, grip_);
-    const fingerpad::StridedView<const Point3<double>> side(rim_pull_.dots.data(), 1, Rim::count,
-                                                            Rim::count);
     const auto touch =
         (*tip_)(channel(rgba_, size_px, size_px, 0), channel(rgba_, size_px, size_px, 1), dots,
-                side, membrane_.film.pressure_mpa(), time_s);
+                membrane_.film.pressure_mpa(), time_s);
     copy_maps();
     tell(touch);
   }
@@ -279,7 +292,7 @@ class VirtualPad {
     const double degrees = 180 / pi;
     const Film& film = membrane_.film;
     const bool pressed = touch.contact.in_contact();
-    const Point3<double>&force = touch.wrench.force_n, &moment = touch.wrench.moment_n_mm;
+    const Point2<double>& along = touch.shear.tangential_force_n;
     numbers_.tell({
         {"object_x_mm", object_.x_mm},
         {"object_y_mm", object_.y_mm},
@@ -306,12 +319,10 @@ class VirtualPad {
         {"dots_ratio", pressed ? touch.stick.stick_ratio : none},
         {"stick_ratio", pressed ? touch.slip.stick_ratio : none},
         {"friction", touch.slip.friction},
-        {"force_x_n", force.x},
-        {"force_y_n", force.y},
-        {"force_z_n", force.z},
-        {"moment_x_n_mm", moment.x},
-        {"moment_y_n_mm", moment.y},
-        {"moment_z_n_mm", moment.z},
+        {"force_x_n", along.x},
+        {"force_y_n", along.y},
+        {"force_z_n", -touch.normal.force_n},
+        {"moment_z_n_mm", touch.shear.moment_n_mm},
         {"depth_error_mm", depth_error_mm_},
     });
   }
@@ -330,7 +341,6 @@ class VirtualPad {
   Picture<Point3<double>> home_;
   std::vector<Point2<double>> dots_px_, shift_mm_;
   Picture<float> dots_, section_;
-  Picture<Point3<double>> rim_;
   std::vector<float> edge_;
   Numbers numbers_;
   std::unique_ptr<fingerpad::Fingertip> tip_;

@@ -35,7 +35,8 @@ void expect(bool good, const char* what, int is_ball, int frame) {
 
 /// Bounds: shot noise of half a grey level over windows of 15 px leaves 0.02 mm of depth, gaps of
 /// 20 um count as touching and widen the contact by 0.5 mm, and the normal force goes with its
-/// area.
+/// area. Where dots at the contact's edge slip, the look-up finds less than the drag; its moment is
+/// that of a plate.
 void check(int is_ball, int frame) {
   auto n = numbers();
   const auto off = [&](const char* what) {
@@ -45,9 +46,9 @@ void check(int is_ball, int frame) {
   require(n["depth_error_mm"] < 0.04, "depth");
   if (frame >= 30 && frame < 216) {
     require(off("press_mm") < 0.1, "press");
-    require(off("force_x_n") < 0.02 && off("force_y_n") < 0.02, "force along the pad");
+    require(off("force_x_n") < 0.2 && off("force_y_n") < 0.2, "force along the pad");
     require(off("force_z_n") < 0.2 * -n["true_force_z_n"], "force along z");
-    require(off("moment_z_n_mm") < 0.1, "moment");
+    require(off("moment_z_n_mm") < (is_ball ? 1 : 0.3), "moment");
   }
   if (frame >= 30 && frame < 90) {
     require(off("turn_deg") < 1, "turn");

@@ -231,7 +231,6 @@ class Grip {
   }
   static constexpr double shear_per_mm2 = 0.08 * tension;  ///< of the rim, N/mm per mm of pull
 
- private:
   /// Force on the film per mm of pull; the second term is the lean that keeps the balance.
   static double stiffness_n_per_mm(const Film& film) {
     const double cosine = std::sqrt(1 - rim_sine * rim_sine);
@@ -239,18 +238,17 @@ class Grip {
     return pi * rim_mm * shear_per_mm2 * (1 + lean);
   }
 
+ private:
   double contact_mm_ = 0, stick_mm_ = 0, lever_mm_ = 0, longest_mm_ = 0;
   Point2<double> pull_mm_ = {0, 0}, step_ = {0, 0};
   double pull_rad_ = 0, step_rad_ = 0;
   bool slides_ = false;
 };
 
-/// The clamped rim: how it is pulled, and the side dots that show it.
+/// The clamped rim: how it is pulled, which is the whole force.
 class Rim {
  public:
   static constexpr Index count = 72;
-  static constexpr double side_dot_mm = 0.8;       ///< from the rim, along the stress-free film
-  static constexpr double modulus_n_per_mm = 0.5;  ///< of the rubber that the side dots are on
 
   static double angle(Index k) { return 2 * pi * static_cast<double>(k) / count; }
   static Point3<double> border(Index k) {
@@ -280,25 +278,10 @@ class Rim {
       const Point3<double> f = 2 * pi * rim_mm / count * (normal * upward + shear * along);
       force_n += f;
       moment_n_mm += cross(border(k), f);
-      dots[static_cast<std::size_t>(k)] =
-          border(k) + side_dot_mm * (stretch(normal) * upward + shear / modulus_n_per_mm * along);
     }
   }
 
   Point3<double> force_n{}, moment_n_mm{};  ///< of the object on the pad, about the base's center
-  std::array<Point3<double>, count> dots{};
-
- private:
-  /// The stretch l that gives this tension, l - l^-3 = tension / modulus, by Newton's method.
-  static double stretch(double normal_n_per_mm) {
-    const double wanted = normal_n_per_mm / modulus_n_per_mm;
-    double l = 1 + wanted / 4;
-    for (int k = 0; k < 6; ++k) {
-      const double cube = l * l * l;
-      l -= (l - 1 / cube - wanted) / (1 + 3 / (cube * l));
-    }
-    return l;
-  }
 };
 
 /// Numbers at random that are the same on every machine (xorshift64*).

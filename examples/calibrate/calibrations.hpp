@@ -55,17 +55,15 @@ Outcome contact(const Path& recording, const Path& sensor);
 /// Noise of the dots, from free/, and the thresholds of slip that follow from it, to read.
 Outcome dots(const Path& recording, const Path& sensor);
 
-/// The rim, from side_dots.csv and signals.csv of the free pad at two or more pressures, or at one
-/// if the length is given.
+/// The membrane, from apex.csv (frame,apex_mm) and signals.csv of the free pad at several
+/// pressures.
 struct RimNoise {
   double base_radius_mm = 0;
-  std::optional<double> length_mm;
-  std::optional<double> inclination_rad;  ///< of the stress-free membrane
-  double dot_noise_mm = 0;                ///< if both noises are 0, errors come from the residuals
-  double pressure_noise_mpa = 0;
-  double stress_free_height_mm = 0;  ///< of the pad's apex; if > 0, the rubber is also fitted,
-                                     ///< from apex.csv (frame,apex_mm)
-  double apex_noise_mm = 0;
+  double stress_free_height_mm = 0;  ///< of the pad's apex, as the mould says
+  double height_sd_mm = 0.1;
+  double apex_noise_mm = 0.01;  ///< of a frame
+  double pressure_noise_share = 0.002;
+  bool finds_rubber = false;  ///< also fits the Mooney share
 };
 Outcome rim(const Path& recording, const RimNoise& noise);
 

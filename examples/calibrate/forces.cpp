@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Calibrates the membrane at the rim, and the curves for forces by look-up.
+// Calibrates the membrane, and the curves for forces by look-up.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,7 +18,6 @@
 #include "fingerpad/calibrate/rim.hpp"
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
 
 namespace calibrate {
@@ -194,112 +193,65 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   outcome.plots.push_back(plot);
 }
 
-/// Heights of the free pad's apex by frame.
-std::map<int, double> apexes_of(const Path& file) {
-  const Columns table(file);
+/// Mean apex heights of the free pad; frames whose pressures differ by less than 2 % are averaged.
+std::vector<fingerpad::FreeApex> apexes_of(const Path& recording, double noise_mm) {
+  const Columns table(recording / "apex.csv");
   if (!table.has("frame") || !table.has("apex_mm")) {
-    replay::fail(file, "must have the columns frame and apex_mm");
+    replay::fail(recording / "apex.csv", "must have the columns frame and apex_mm");
   }
-  std::map<int, double> apexes;
-  for (std::size_t k = 0; k < table.rows(); ++k) {
-    apexes[static_cast<int>(table.number(k, "frame"))] = table.number(k, "apex_mm");
-  }
-  return apexes;
-}
-
-/// Adds frames of the free pad; frames whose pressures differ by less than 2 % form a level.
-template <class Add>
-void add_levels(const Path& recording, const replay::SideDots& side, const Add& add) {
   const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
-  std::vector<double> levels;
-  for (const auto& [frame, dots] : side.dots_mm) {
-    const double pressure = signals.pressure_mpa(frame);
-    const auto same = std::find_if(levels.begin(), levels.end(), [&](double level) {
-      return std::abs(pressure / level - 1) < 0.02;
-    });
-    const auto level = static_cast<std::size_t>(same - levels.begin());
-    if (same == levels.end()) {
-      levels.push_back(pressure);
-    }
-    if (!add(level, dots, pressure, frame)) {
+  std::vector<fingerpad::FreeApex> levels;
+  std::vector<double> frames;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const int frame = static_cast<int>(table.number(k, "frame"));
+    const double pressure_mpa = signals.pressure_mpa(frame);
+    if (!(pressure_mpa > 0)) {
       replay::fail(recording / "signals.csv",
                    "frame " + std::to_string(frame) + " has no pressure above 0");
     }
-  }
-}
-
-/// Mean tension that the law predicts from the chords to the side dots, N/mm, for a plot.
-double mean_pull(const replay::SpaceGrid& border,
-                 const replay::SpaceGrid& dots,
-                 const fingerpad::RimFit<double>& fit) {
-  double sum = 0;
-  int count = 0;
-  for (int k = 0; k < dots.cols; ++k) {
-    const cv::Vec3d chord = dots(0, k) - border(0, k);
-    const double stretch = cv::norm(chord) / fit(k);
-    if (std::isfinite(stretch)) {
-      sum += fit.modulus_n_per_mm * chord[2] / fit(k) * (1 - std::pow(stretch, -4));
-      ++count;
+    const auto same = std::find_if(levels.begin(), levels.end(), [&](const auto& level) {
+      return std::abs(pressure_mpa / level.pressure_mpa - 1) < 0.02;
+    });
+    const auto at = static_cast<std::size_t>(same - levels.begin());
+    if (same == levels.end()) {
+      levels.push_back({pressure_mpa, 0});
+      frames.push_back(0);
     }
+    frames[at] += 1;
+    levels[at].pressure_mpa += (pressure_mpa - levels[at].pressure_mpa) / frames[at];
+    levels[at].apex_mm += (table.number(k, "apex_mm") - levels[at].apex_mm) / frames[at];
+    levels[at].sd_mm = noise_mm / std::sqrt(frames[at]);
   }
-  return sum / count;
+  return levels;
 }
 
 }  // namespace
 
 Outcome rim(const Path& recording, const RimNoise& noise) {
-  const auto side = replay::read_side_dots(recording / "side_dots.csv", any_frame);
-  if (!side) {
-    replay::fail(recording / "side_dots.csv",
-                 "there is no such file (it holds the dots beside the rim)");
+  const auto apexes = apexes_of(recording, noise.apex_noise_mm);
+  const fingerpad::StressFreeCap<double> cap{noise.base_radius_mm, noise.stress_free_height_mm};
+  fingerpad::RimFitOptions options{noise.pressure_noise_share, noise.height_sd_mm};
+  options.mooney_sd = noise.finds_rubber ? 0.3 : 0;
+  const auto fit = fingerpad::fit_rim(cap, apexes, options);
+  Report report{.what = "rim", .residual = fit.residual_mm, .residual_unit = "mm"};
+  report.parameters = {{"membrane_modulus_n_per_mm", fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm},
+                       {"stress_free_height_mm", fit.height_mm, fit.height_sd_mm}};
+  if (noise.finds_rubber) {
+    report.parameters.push_back({"mooney_share", fit.mooney_share, fit.mooney_sd});
   }
-  fingerpad::RimCalibration<> calibration(side->border_mm, noise.base_radius_mm,
-                                          noise.inclination_rad);
-  const bool finds_rubber = noise.stress_free_height_mm > 0;
-  const auto apexes = finds_rubber ? apexes_of(recording / "apex.csv") : std::map<int, double>();
-  add_levels(
-      recording, *side, [&](std::size_t level, const auto& dots, double pressure, int frame) {
-        const auto apex = apexes.find(frame);
-        return calibration.add(level, dots, pressure, apex == apexes.end() ? none : apex->second);
-      });
-  const fingerpad::RimFitOptions options{noise.dot_noise_mm, noise.pressure_noise_mpa,
-                                         noise.apex_noise_mm, noise.stress_free_height_mm};
-  const auto fit = noise.length_mm ? calibration.fit_modulus(*noise.length_mm, options)
-                                   : calibration.fit(options);
-  Report report{.what = "rim", .residual = fit.residual, .residual_unit = "of the mean pull"};
-  report.parameters = {{"side_dot_length_mm", fit.length_mm, fit.length_sd_mm},
-                       {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm},
-                       {"scatter_of_lengths", fit.share_scatter}};
-  if (finds_rubber) {
-    report.parameters.push_back({"mooney_share", fit.mooney_share, fit.mooney_share_sd});
-    report.parameters.push_back({"residual_of_the_apex_mm", fit.apex_residual_mm});
-  }
-  report.covariance = {{fit.length_sd_mm * fit.length_sd_mm,
-                        fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm},
-                       {fit.correlation * fit.length_sd_mm * fit.modulus_sd_n_per_mm,
-                        fit.modulus_sd_n_per_mm * fit.modulus_sd_n_per_mm}};
   report.doubt(!fit.ok(), text_of(fit));
-  report.doubt(!std::isfinite(fit.modulus_sd_n_per_mm),
-               "the uncertainty of the modulus is unknown: give the noise, or record at least "
-               "three pressures");
-  report.doubt(
-      fit.modulus_sd_n_per_mm > 0.05 * fit.modulus_n_per_mm,
-      "the modulus is uncertain by more than 5 %: use pressures further apart or more frames");
   Outcome outcome;
-  outcome.sections["rim"] = {{"side_dot_length_mm", fit.length_mm},
-                             {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm}};
-  if (finds_rubber) {
+  outcome.sections["rim"] = {
+      {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm},
+      {"stress_free_inclination_rad", 2 * std::atan(fit.height_mm / noise.base_radius_mm)}};
+  if (noise.finds_rubber) {
     outcome.sections["rim"]["mooney_share"] = fit.mooney_share;
   }
-  if (noise.inclination_rad) {
-    outcome.sections["rim"]["stress_free_inclination_rad"] = *noise.inclination_rad;
-  }
-  Plot plot{"pressure [MPa]", "mean vertical pull of the rim [N/mm]", {}};
-  const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
-  for (const auto& [frame, dots] : side->dots_mm) {
-    const double pressure = signals.pressure_mpa(frame);
-    plot.points.push_back(
-        {pressure, pressure * noise.base_radius_mm / 2, mean_pull(side->border_mm, dots, fit)});
+  Plot plot{"pressure [MPa]", "height of the apex [mm]", {}};
+  const fingerpad::FreePad<double> pad({noise.base_radius_mm, fit.height_mm, fit.mooney_share});
+  for (const auto& level : apexes) {
+    const auto at = pad.rim(level.pressure_mpa / fit.modulus_n_per_mm);
+    plot.points.push_back({level.pressure_mpa, level.apex_mm, at ? at->apex_mm : none});
   }
   outcome.reports = {report};
   outcome.plots = {plot};

@@ -127,22 +127,21 @@ void add_dots(CLI::App& app, Common& common, std::function<Outcome()>& work) {
 
 void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
   auto* sub = add(
-      app, common, "rim", "length of the side dots and the membrane's modulus",
+      app, common, "rim", "the membrane's modulus and stress-free height, from apex.csv",
       [&] { return calibrate::rim(common.recording, given.rim); }, work);
   sub->add_option("--base-radius-mm", given.rim.base_radius_mm, "base radius of the pad")
       ->required()
       ->check(CLI::PositiveNumber);
-  sub->add_option("--length-mm", given.rim.length_mm, "length of the side dots, if known");
-  sub->add_option("--inclination-rad", given.rim.inclination_rad,
-                  "inclination of the membrane without stress");
-  sub->add_option("--dot-noise-mm", given.rim.dot_noise_mm, "noise of a coordinate of a side dot");
-  sub->add_option("--pressure-noise-mpa", given.rim.pressure_noise_mpa,
-                  "noise of the pressure of a frame");
   sub->add_option("--stress-free-height-mm", given.rim.stress_free_height_mm,
-                  "apex height of the pad without stress; with it the type of rubber is fitted, "
-                  "too, from apex.csv");
+                  "apex height of the pad without stress, as its mould says")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--height-sd-mm", given.rim.height_sd_mm, "standard deviation of that height");
   sub->add_option("--apex-noise-mm", given.rim.apex_noise_mm,
                   "noise of an apex height in apex.csv");
+  sub->add_option("--pressure-noise-share", given.rim.pressure_noise_share,
+                  "noise of a pressure, as a share of it");
+  sub->add_flag("--rubber", given.rim.finds_rubber, "fit the type of rubber, too");
 
   sub = add(
       app, common, "force", "force curves, from contacts and a table of the gauge",

@@ -13,6 +13,7 @@
 #include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
 #include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/membrane/free_pad.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 
@@ -184,29 +185,19 @@ void write_pad(const Path& folder, Noise& noise) {
   write_text(folder / "presses.csv", presses);
 }
 
-/// Writes side dots of the free pad at four pressures, by the law of force/wrench.hpp with length
-/// 0.8 mm and mu t = 0.5 N/mm.
+/// Writes apex heights of the free pad at four pressures, of a cap of 11 mm with mu t = 0.5 N/mm.
 void write_rim(const Path& folder, Noise& noise) {
   std::filesystem::create_directories(folder);
   std::string signals = "frame,time_s,pressure_mpa\n";
-  std::string dots = "frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z\n";
-  constexpr double length_mm = 0.8, modulus = 0.5;
-  const double stretches[] = {1.15, 1.3, 1.5, 1.8};
+  std::string apexes = "frame,apex_mm\n";
+  const fingerpad::FreePad<double> pad({base_mm, 11});
   for (int k = 0; k < 20; ++k) {
-    const double stretch = stretches[k / 5];
-    const double incline = 1.0 + 0.1 * (k / 5);
-    const double pull = modulus * std::sin(incline) * (stretch - std::pow(stretch, -3));
-    signals += line("%d,%.1f,%.6f\n", k, 0.1 * k, 2 * pull / base_mm);
-    for (int j = 0; j < 36; ++j) {
-      const double angle = 2 * std::numbers::pi * j / 36;
-      const double inward = base_mm - length_mm * stretch * std::cos(incline) + 0.003 * noise();
-      dots += line("%d,%d,%.4f,%.4f,0,%.4f,%.4f,%.4f\n", k, j, base_mm * std::cos(angle),
-                   base_mm * std::sin(angle), inward * std::cos(angle), inward * std::sin(angle),
-                   length_mm * stretch * std::sin(incline) + 0.003 * noise());
-    }
+    const double pressure_mpa = 0.008 + 0.004 * (k / 5);
+    signals += line("%d,%.1f,%.6f\n", k, 0.1 * k, pressure_mpa);
+    apexes += line("%d,%.4f\n", k, pad.rim(pressure_mpa / 0.5)->apex_mm + 0.01 * noise());
   }
   write_text(folder / "signals.csv", signals);
-  write_text(folder / "side_dots.csv", dots);
+  write_text(folder / "apex.csv", apexes);
 }
 
 /// Writes 15 x 15 dots: at rest in free/; in frames/ an object drags them three times and loses

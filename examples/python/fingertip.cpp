@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -20,7 +19,7 @@ using fingerpad::FingertipResult;
 using fingerpad::StickOptions;
 using Reference = fingerpad::DepthReference<float>;
 using Options = fingerpad::FingertipOptions;
-using WrenchOptions = fingerpad::WrenchOptions<double>;
+using fingerpad::WrenchOptions;
 
 /// A fingertip; calls from several threads are serialised.
 class Fingertip {
@@ -30,7 +29,6 @@ class Fingertip {
   FingertipResult operator()(const Array& red,
                              const Array& green,
                              const Array& dots_px,
-                             const Array& side_dots_mm,
                              const Number& pressure,
                              const Number& time) {
     const double pressure_mpa = number_of(pressure, "pressure_mpa");
@@ -38,10 +36,9 @@ class Fingertip {
     const auto red_view = view_of<std::uint8_t>(red, "red");
     const auto green_view = view_of<std::uint8_t>(green, "green");
     const auto dots = dots_px_of(dots_px, "dots_px");
-    const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
     const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
-    return fingertip_(red_view, green_view, dots, side_dots, pressure_mpa, time_s);
+    return fingertip_(red_view, green_view, dots, pressure_mpa, time_s);
   }
 
   /// A copy of the view that `show` returns for the last frame.
@@ -72,23 +69,20 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const fingerpad::Absorption<double>& fluid,
                                 const Reference& reference,
                                 const Array& free_dots_mm,
-                                const Array& rim_mm,
                                 const fingerpad::ContactTest& contact,
                                 const StickOptions& stick,
-                                const WrenchOptions& wrench,
+                                const std::optional<WrenchOptions>& wrench,
                                 const std::optional<fingerpad::NormalForce<>>& force_of_area,
                                 const std::optional<fingerpad::NormalForce<>>& force_of_depth,
                                 const std::optional<fingerpad::Shear<>>& shear,
                                 bool shear_by_depth,
                                 const Count& smoothing_px,
-                                const Number& dot_radius_px,
-                                const std::optional<fingerpad::MembraneWrenchOptions>& six_axes) {
+                                const Number& dot_radius_px) {
   Options options{camera, fluid, reference};
   options.sampling = 1;         // depth at every pixel, because Python reads whole arrays
   options.flat_area.emplace();  // also without a curve
-  const Dots dots(free_dots_mm, "free_dots_mm"), rim(rim_mm, "rim_mm");
+  const Dots dots(free_dots_mm, "free_dots_mm");
   options.free_dots_mm = dots.view();
-  options.rim_mm = rim.view();
   options.contact = contact;
   options.stick = stick;
   options.wrench = wrench;
@@ -98,7 +92,6 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.shear_by_depth = shear_by_depth;
   options.smoothing_px = count_of<int>(smoothing_px, "smoothing_px");
   options.dot_radius_px = number_of(dot_radius_px, "dot_radius_px");
-  options.six_axes = six_axes;
   return std::make_unique<Fingertip>(options);
 }
 
@@ -208,55 +201,12 @@ void bind_result(py::module_& module) {
       .def_readonly("by_depth", &Result::by_depth)
       .def_readonly("normal", &Result::normal, "by area and depth together")
       .def_readonly("shear", &Result::shear)
-      .def_readonly("six_axes", &Result::six_axes)
       .def_readonly("wrench", &Result::wrench);
-}
-
-void bind_six_axes(py::module_& module) {
-  using SixAxes = fingerpad::MembraneWrenchOptions;
-  bind_options<SixAxes>(module, "MembraneWrenchOptions",
-                        "Six axes from printed dots near the rim; see force/membrane_wrench.hpp.")
-      .def_property(
-          "base_radius_mm", [](const SixAxes& o) { return o.cap.base_radius_mm; },
-          [](SixAxes& o, double mm) { o.cap.base_radius_mm = mm; })
-      .def_property(
-          "stress_free_height_mm", [](const SixAxes& o) { return o.cap.height_mm; },
-          [](SixAxes& o, double mm) { o.cap.height_mm = mm; })
-      .def_property(
-          "mooney_share", [](const SixAxes& o) { return o.cap.mooney_share; },
-          [](SixAxes& o, double share) { o.cap.mooney_share = share; })
-      .def_readwrite("modulus_n_per_mm", &SixAxes::modulus_n_per_mm)
-      .def_readwrite("modulus_sd_share", &SixAxes::modulus_sd_share)
-      .def_readwrite("pressure_sd_share", &SixAxes::pressure_sd_share)
-      .def_readwrite("reach_share", &SixAxes::reach_share)
-      .def_readwrite("loose_rim", &SixAxes::loose_rim);
-  using SixAxesResult = fingerpad::MembraneWrenchResult;
-  py::class_<SixAxesResult>(module, "MembraneWrenchResult",
-                            "Force and moment that the object exerts on the pad. NaN unless ok.")
-      .def_property_readonly("ok", &SixAxesResult::ok)
-      .def_property_readonly("status", [](const SixAxesResult& r) { return name_of(r.status); })
-      .def_property_readonly("force_n", [](const SixAxesResult& r) { return as_tuple(r.force_n); })
-      .def_property_readonly("moment_n_mm",
-                             [](const SixAxesResult& r) { return as_tuple(r.moment_n_mm); })
-      .def_property_readonly(
-          "covariance",
-          [](const SixAxesResult& r) {
-            std::array<std::array<double, 6>, 6> rows;
-            for (Eigen::Index i = 0; i < 36; ++i) {
-              rows[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] =
-                  r.covariance(i / 6, i % 6);
-            }
-            return rows;
-          },
-          "6 x 6, of force in N and moment in N mm")
-      .def_readonly("misfit", &SixAxesResult::misfit)
-      .def_readonly("marks", &SixAxesResult::marks, "dots used");
 }
 
 }  // namespace
 
 void bind_fingertip(py::module_& module) {
-  bind_six_axes(module);
   bind_motion_result(module);
   bind_slip_result(module);
   bind_shift_and_area(module);
@@ -266,24 +216,22 @@ void bind_fingertip(py::module_& module) {
       "Computes the touch from frames, dots and pressure; see pipeline/fingertip.hpp.\n"
       "It stores past frames: use one object for each pad.")
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
-           py::arg("free_dots_mm"), py::arg("rim_mm"),
-           py::arg("contact") = fingerpad::ContactTest(),
-           py::arg("stick") = StickOptions{.noise = 0.005}, py::arg("wrench") = WrenchOptions(),
+           py::arg("free_dots_mm"), py::arg("contact") = fingerpad::ContactTest(),
+           py::arg("stick") = StickOptions{.noise = 0.005}, py::arg("wrench") = py::none(),
            py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
            py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
-           py::arg("six_axes") = py::none(),
            "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
-           "(0, 0, 3): no results from dots. rim_mm: float64 (1, n, 3), where the side dots are\n"
-           "fixed; (0, 0, 3): no six-axis force. force_of_area, force_of_depth: NormalForce;\n"
-           "shear: Shear. Without them no forces are looked up.")
+           "(0, 0, 3): no results from dots. wrench: WrenchOptions; None: no six-axis force.\n"
+           "force_of_area, force_of_depth: NormalForce; shear: Shear. Without them no forces are\n"
+           "looked up.")
       .def(
           "__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
-          py::arg("side_dots_mm"), py::arg("pressure_mpa"),
+          py::arg("pressure_mpa"),
           py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
-          "touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s)\n\n"
+          "touch = fingertip(red, green, dots_px, pressure_mpa, time_s)\n\n"
           "red, green: uint8 (rows, cols). dots_px: float64 (rows, cols, 2), NaN where not found.\n"
-          "side_dots_mm: float64 (1, n, 3). pressure_mpa: MPa above the air pressure. time_s: s.\n"
+          "pressure_mpa: MPa above the air pressure. time_s: s.\n"
           "For arrays of another size the status is \"refused\".")
       .def_property_readonly(
           "depth_mm",

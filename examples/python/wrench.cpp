@@ -4,60 +4,66 @@
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <mutex>
+#include <vector>
 
-#include "fingerpad/force/pad_heights.hpp"
 #include "python/arrays.hpp"
 #include "python/parts.hpp"
 
 namespace python {
 namespace {
 
-using Options = fingerpad::WrenchOptions<double>;
-using Result = fingerpad::WrenchResult<double>;
+using Options = fingerpad::WrenchOptions;
+using Result = fingerpad::WrenchResult;
 
-/// Six-axis force from depth maps, with all memory for a frame; calls from several threads are
-/// serialised.
-class WrenchOfDepth {
-  using Method = fingerpad::Wrench<>;
-  using Heights = fingerpad::PadHeights<>;
-
+/// Six-axis force from dots in the picture; calls from several threads are serialised.
+class WrenchOfDots {
  public:
-  WrenchOfDepth(const fingerpad::Camera<double>& camera,
-                const Count& rows,
-                const Count& cols,
-                const Array& rim_mm,
-                const Options& options)
-      : heights_(
-            count_of(rows, "rows"), count_of(cols, "cols"), camera, options.base_radius_mm + 1),
-        map_(heights_.map()),
-        wrench_(Dots(rim_mm, "rim_mm").view(), options) {}
+  WrenchOfDots(const fingerpad::Camera<double>& camera, const Options& options)
+      : wrench_(camera, options) {}
 
-  Result operator()(const Array& depth_mm,
-                    const Array& mask,
-                    const Array& side_dots_mm,
-                    const Number& pressure) {
+  /// Learns where the dots lie on the membrane; returns how many are near enough to the rim.
+  Index learn(const Array& free_dots_px, const Number& pressure) {
     const double pressure_mpa = number_of(pressure, "pressure_mpa");
-    const auto depth = view_of<float>(depth_mm, "depth_mm");
-    const auto contact = mask_of(mask, "mask");
-    const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
+    const auto dots = dots_px_of(free_dots_px, "free_dots_px");
     const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
-    return heights_(depth, contact, map_) ? wrench_(map_, side_dots, pressure_mpa) : Result();
+    places_.clear();
+    if (!wrench_.begin(pressure_mpa)) {
+      return 0;
+    }
+    Index found = 0;
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        const auto mark = wrench_.place_in_free_picture(dots(i, j));
+        places_.push_back(mark.value_or(fingerpad::Mark{}));
+        found += mark ? 1 : 0;
+      }
+    }
+    return found;
   }
 
-  Result by_modulus(const Array& side_dots_mm, const Number& pressure) {
+  Result operator()(const Array& dots_px, const Number& pressure, const Number& sd) {
     const double pressure_mpa = number_of(pressure, "pressure_mpa");
-    const auto side_dots = dots_mm_of(side_dots_mm, "side_dots_mm");
+    const double sd_px = number_of(sd, "sd_px");
+    const auto dots = dots_px_of(dots_px, "dots_px");
     const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
-    return wrench_.by_modulus(side_dots, pressure_mpa);
+    marks_.clear();
+    for (Index k = 0; k < dots.rows() * dots.cols(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (at < places_.size() && places_[at].arc_mm > 0) {
+        marks_.push_back({places_[at].arc_mm, places_[at].azimuth_rad,
+                          dots(k / dots.cols(), k % dots.cols()), sd_px});
+      }
+    }
+    return wrench_(marks_, pressure_mpa);
   }
 
  private:
-  Heights heights_;
-  Heights::Map map_;
-  Method wrench_;
+  fingerpad::Wrench<> wrench_;
+  std::vector<fingerpad::Mark> places_, marks_;
   std::mutex mutex_;
 };
 
@@ -65,16 +71,21 @@ class WrenchOfDepth {
 
 void bind_wrench(py::module_& module) {
   bind_options<Options>(module, "WrenchOptions",
-                        "Options of rim and membrane; see force/wrench.hpp.")
-      .def_readwrite("base_radius_mm", &Options::base_radius_mm)
-      .def_readwrite("side_dot_length_mm", &Options::side_dot_length_mm)
-      .def_readwrite("stress_free_inclination_rad", &Options::stress_free_inclination_rad)
-      .def_readwrite("mooney_share", &Options::mooney_share)
+                        "Six axes from printed dots near the rim; see force/wrench.hpp.")
+      .def_property(
+          "base_radius_mm", [](const Options& o) { return o.cap.base_radius_mm; },
+          [](Options& o, double mm) { o.cap.base_radius_mm = mm; })
+      .def_property(
+          "stress_free_height_mm", [](const Options& o) { return o.cap.height_mm; },
+          [](Options& o, double mm) { o.cap.height_mm = mm; })
+      .def_property(
+          "mooney_share", [](const Options& o) { return o.cap.mooney_share; },
+          [](Options& o, double share) { o.cap.mooney_share = share; })
       .def_readwrite("modulus_n_per_mm", &Options::modulus_n_per_mm)
-      .def_readwrite("line_step_mm", &Options::line_step_mm)
-      .def_readwrite("blur_mm", &Options::blur_mm)
-      .def_readwrite("reach_mm", &Options::reach_mm)
-      .def_readwrite("max_pressure_mpa", &Options::max_pressure_mpa);
+      .def_readwrite("modulus_sd_share", &Options::modulus_sd_share)
+      .def_readwrite("pressure_sd_share", &Options::pressure_sd_share)
+      .def_readwrite("reach_share", &Options::reach_share)
+      .def_readwrite("loose_rim", &Options::loose_rim);
   py::class_<Result>(
       module, "WrenchResult",
       "Six-axis force and moment that the object exerts on the pad, the moment about\n"
@@ -83,37 +94,32 @@ void bind_wrench(py::module_& module) {
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_property_readonly("force_n", [](const Result& r) { return as_tuple(r.force_n); })
       .def_property_readonly("moment_n_mm", [](const Result& r) { return as_tuple(r.moment_n_mm); })
-      .def_readonly("pressure_mpa", &Result::pressure_mpa, "given, or found by the modulus")
-      .def_readonly("modulus_n_per_mm", &Result::modulus_n_per_mm)
-      .def_readonly("summit_area_mm2", &Result::summit_area_mm2)
-      .def_readonly("by_modulus", &Result::by_modulus)
       .def_property_readonly(
-          "missing", [](const Result& r) { return r.faults.missing; },
-          "side dots that were not found")
-      .def_property_readonly(
-          "unstretched", [](const Result& r) { return r.faults.unstretched; },
-          "side dots without a usable direction")
-      .def_property_readonly(
-          "misplaced", [](const Result& r) { return r.faults.misplaced; },
-          "side dots below the base or near another border point");
-  py::class_<WrenchOfDepth>(module, "Wrench",
-                            "Six-axis force from depth map, side dots and pressure;\n"
-                            "force/wrench.hpp.")
-      .def(py::init<const fingerpad::Camera<double>&, const Count&, const Count&, const Array&,
-                    const Options&>(),
-           py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("rim_mm"),
-           py::arg("options") = Options(),
-           "rows, cols: of the depth maps, px. rim_mm: float64 (1, n, 3), where the side dots are\n"
-           "fixed, n >= 6.")
-      .def("__call__", &WrenchOfDepth::operator(), py::arg("depth_mm"), py::arg("mask"),
-           py::arg("side_dots_mm"), py::arg("pressure_mpa"),
-           "result = wrench(depth_mm, mask, side_dots_mm, pressure_mpa)\n\n"
-           "depth_mm: float32 (rows, cols), NaN where unknown. mask: uint8 or bool (rows, cols).\n"
-           "side_dots_mm: float64 (1, n, 3), NaN where not found. pressure_mpa: MPa above the\n"
-           "air pressure, NaN: found by modulus_n_per_mm. For arrays of another size the status is "
-           "\"refused\".")
-      .def("by_modulus", &WrenchOfDepth::by_modulus, py::arg("side_dots_mm"),
-           py::arg("pressure_mpa"), "The same without a depth map, from modulus_n_per_mm.");
+          "covariance",
+          [](const Result& r) {
+            std::array<std::array<double, 6>, 6> rows;
+            for (Eigen::Index i = 0; i < 36; ++i) {
+              rows[static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] =
+                  r.covariance(i / 6, i % 6);
+            }
+            return rows;
+          },
+          "6 x 6, of force in N and moment in N mm")
+      .def_readonly("misfit", &Result::misfit)
+      .def_readonly("marks", &Result::marks, "dots used");
+  py::class_<WrenchOfDots>(module, "Wrench",
+                           "Six-axis force from the pixels of printed dots and the pressure;\n"
+                           "force/wrench.hpp.")
+      .def(py::init<const fingerpad::Camera<double>&, const Options&>(), py::arg("camera"),
+           py::arg("options") = Options())
+      .def("learn", &WrenchOfDots::learn, py::arg("free_dots_px"), py::arg("pressure_mpa"),
+           "Takes the dots of the free pad, float64 (rows, cols, 2), NaN where not found; returns\n"
+           "how many of them are near the rim.")
+      .def("__call__", &WrenchOfDots::operator(), py::arg("dots_px"), py::arg("pressure_mpa"),
+           py::arg("sd_px") = py::float_(0.06),
+           "result = wrench(dots_px, pressure_mpa, sd_px)\n\n"
+           "dots_px: float64 (rows, cols, 2) as in learn, NaN where not found or touched.\n"
+           "pressure_mpa: MPa above the air pressure. sd_px: noise of a dot.");
 }
 
 }  // namespace python

@@ -119,7 +119,7 @@ void render_all(const Options& options) {
   const double dot_mm = sensor.dots ? sensor.dots->diameter_mm : 0.0;
   fs::create_directories(options.out / "frames");
   copy_unless_same(options.recording / "sensor.json", options.out / "sensor.json");
-  for (const char* file : {"signals.csv", "side_dots.csv", "stress_free_dots.csv"}) {
+  for (const char* file : {"signals.csv", "stress_free_dots.csv"}) {
     copy_unless_same(options.recording / file, options.out / file);
   }
   render::Noise noise(options.seed, options.lighting);

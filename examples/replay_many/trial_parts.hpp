@@ -65,7 +65,6 @@ inline const auto draw_samples = [](const auto& data, Chance& chance) {
 /// Trials defined in trials_of_shape.cpp and trials_of_preslip.cpp.
 Trial camera_plate();
 Trial cap();
-Trial rubber();
 Trial intensity();
 Trial preslip();
 

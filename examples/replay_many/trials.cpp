@@ -172,59 +172,42 @@ Trial dots() {
   return trial({"noise_px"}, {noise_px}, 1, measure, draw_samples, fit);
 }
 
-/// Twenty frames of side dots at four pressures, 0.003 mm of noise.
+/// Mean apexes of a free pad at four pressures, 0.005 mm of noise each.
 Trial rim() {
-  constexpr double base_mm = 18, length_mm = 0.8, modulus = 0.5, noise_mm = 0.003;
-  constexpr int columns = 36;
-  struct Frame {
-    std::size_t level;
-    double pressure_mpa;
-    cv::Mat_<cv::Vec3d> dots_mm;
-  };
-  cv::Mat_<cv::Vec3d> border(1, columns);
-  for (int j = 0; j < columns; ++j) {
-    const double angle = 2 * std::numbers::pi * j / columns;
-    border(0, j) = {base_mm * std::cos(angle), base_mm * std::sin(angle), 0};
-  }
+  constexpr double base_mm = 18.735, height_mm = 11, modulus = 0.5;
+  using Apexes = std::vector<fingerpad::FreeApex>;
   const auto measure = [=](Chance& chance) {
-    const double stretches[] = {1.15, 1.3, 1.5, 1.8};
-    std::vector<Frame> frames;
-    for (std::size_t k = 0; k < 20; ++k) {
-      const std::size_t level = k / 5;
-      const double stretch = stretches[level], incline = 1.0 + 0.1 * static_cast<double>(level);
-      const double pull = modulus * std::sin(incline) * (stretch - std::pow(stretch, -3));
-      frames.push_back({level, 2 * pull / base_mm, cv::Mat_<cv::Vec3d>(1, columns)});
-      for (int j = 0; j < columns; ++j) {
-        const double angle = 2 * std::numbers::pi * j / columns;
-        const double rho = base_mm - length_mm * stretch * std::cos(incline);
-        frames.back().dots_mm(0, j) = {
-            rho * std::cos(angle) + noise_mm * chance.normal(),
-            rho * std::sin(angle) + noise_mm * chance.normal(),
-            length_mm * stretch * std::sin(incline) + noise_mm * chance.normal()};
+    const fingerpad::FreePad<double> pad({base_mm, height_mm});
+    Apexes apexes;
+    for (const double mpa : {0.008, 0.012, 0.016, 0.020}) {
+      for (int k = 0; k < 5; ++k) {
+        apexes.push_back({mpa, pad.rim(mpa / modulus)->apex_mm + 0.005 * chance.normal(), 0.005});
       }
     }
-    return frames;
+    return apexes;
   };
-  // Frames are drawn within their level, because without a level the calibration would differ.
-  const auto draw = [](const std::vector<Frame>& frames, Chance& chance) {
-    std::vector<Frame> drawn;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      drawn.push_back(frames[5 * (k / 5) + chance.below(5)]);
+  // drawn within their pressure, because without one of them the calibration would differ
+  const auto draw = [](const Apexes& seen, Chance& chance) {
+    Apexes drawn;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      drawn.push_back(seen[5 * (k / 5) + chance.below(5)]);
     }
     return drawn;
   };
-  const auto fit = [=](const std::vector<Frame>& frames) {
-    fingerpad::RimCalibration<> calibration(border, base_mm);
-    for (const Frame& frame : frames) {
-      (void)calibration.add(frame.level, frame.dots_mm, frame.pressure_mpa);
+  const auto fit = [=](const Apexes& seen) {
+    Apexes means;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      if (k % 5 == 0) {
+        means.push_back({seen[k].pressure_mpa, 0, 0.005 / std::sqrt(5.0)});
+      }
+      means.back().apex_mm += seen[k].apex_mm / 5;
     }
-    const auto found = calibration.fit({.side_dot_noise_mm = noise_mm});
-    const double shared = found.correlation * found.length_sd_mm * found.modulus_sd_n_per_mm;
-    return Estimate{{found.length_mm, found.modulus_n_per_mm},
-                    {{found.length_sd_mm * found.length_sd_mm, shared},
-                     {shared, found.modulus_sd_n_per_mm * found.modulus_sd_n_per_mm}}};
+    const auto found = fit_rim({base_mm, height_mm}, means,
+                               {.pressure_sd_share = 0, .height_sd_mm = 1, .radius_sd_mm = 0});
+    return Estimate{{found.modulus_n_per_mm, found.height_mm},
+                    diagonal({found.modulus_sd_n_per_mm, found.height_sd_mm})};
   };
-  return trial({"side_dot_length_mm", "membrane_modulus_n_per_mm"}, {length_mm, modulus}, 0.5,
+  return trial({"membrane_modulus_n_per_mm", "stress_free_height_mm"}, {modulus, height_mm}, 0.5,
                measure, draw, fit);
 }
 
@@ -396,7 +379,6 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"intensity", intensity},
       {"preslip", preslip},
       {"rim", rim},
-      {"rubber", rubber},
       {"normal_force", normal_force},
       {"robust_normal_force", robust_normal_force},
       {"tangential_force", tangential_force},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Trials of the calibrations of geometry: camera, free pad, rubber at the rim, and gel intensity.
+// Trials of the calibrations of geometry: camera, free pad, and gel intensity.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,6 @@
 #include "calibrate/geometry.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
-#include "fingerpad/calibrate/rim.hpp"
 #include "trial_parts.hpp"
 
 namespace replay_many {
@@ -71,78 +70,6 @@ Trial cap() {
   };
   return trial({"base_radius_mm", "apex_height_mm"}, {base_mm, apex_mm}, 0.1, measure, draw_samples,
                fit);
-}
-
-namespace {
-
-/// Side dots and apex of a cap of rubber (tests/support/inflated_rubber.hpp: 0.5 N/mm, side dots
-/// 0.8 mm from the rim), five frames at each of four pressures.
-struct RubberFrame {
-  static constexpr int columns = 36;
-  static constexpr double base_mm = 18.735, noise_mm = 0.003, apex_noise_mm = 0.005;
-
-  std::size_t level;
-  double pressure_mpa, apex_mm;
-  cv::Mat_<cv::Vec3d> dots_mm;
-
-  static cv::Vec3d on_circle(double rho_mm, int j) {
-    const double angle = 2 * std::numbers::pi * j / columns;
-    return {rho_mm * std::cos(angle), rho_mm * std::sin(angle), 0};
-  }
-  static std::vector<RubberFrame> of(Chance& chance) {
-    struct Inflated {
-      double pressure_mpa, rho_mm, z_mm, apex_mm;
-    };
-    constexpr Inflated levels[] = {{0.008, 18.423308, 0.772475, 11.896197},
-                                   {0.012, 18.455999, 0.803286, 12.417880},
-                                   {0.016, 18.489161, 0.832891, 12.963446},
-                                   {0.020, 18.523649, 0.861763, 13.532581}};
-    std::vector<RubberFrame> frames;
-    for (std::size_t k = 0; k < 20; ++k) {
-      const Inflated& cap = levels[k / 5];
-      frames.push_back({k / 5, cap.pressure_mpa, cap.apex_mm + apex_noise_mm * chance.normal(),
-                        cv::Mat_<cv::Vec3d>(1, columns)});
-      for (int j = 0; j < columns; ++j) {
-        frames.back().dots_mm(0, j) =
-            on_circle(cap.rho_mm, j) + cv::Vec3d(noise_mm * chance.normal(),
-                                                 noise_mm * chance.normal(),
-                                                 cap.z_mm + noise_mm * chance.normal());
-      }
-    }
-    return frames;
-  }
-};
-
-}  // namespace
-
-/// With known apex heights the share of Mooney's second constant is fitted, too.
-Trial rubber() {
-  constexpr double height_mm = 11, share = 0.3;
-  using Frames = std::vector<RubberFrame>;
-  cv::Mat_<cv::Vec3d> border(1, RubberFrame::columns);
-  for (int j = 0; j < RubberFrame::columns; ++j) {
-    border(0, j) = RubberFrame::on_circle(RubberFrame::base_mm, j);
-  }
-  // frames are drawn within their level, as for the rim
-  const auto draw = [](const Frames& seen, Chance& chance) {
-    Frames drawn;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      drawn.push_back(seen[5 * (k / 5) + chance.below(5)]);
-    }
-    return drawn;
-  };
-  const auto fit = [=](const Frames& seen) {
-    fingerpad::RimCalibration<> calibration(border, RubberFrame::base_mm,
-                                            2 * std::atan(height_mm / RubberFrame::base_mm));
-    for (const RubberFrame& frame : seen) {
-      (void)calibration.add(frame.level, frame.dots_mm, frame.pressure_mpa, frame.apex_mm);
-    }
-    const auto found = calibration.fit({.side_dot_noise_mm = RubberFrame::noise_mm,
-                                        .apex_noise_mm = RubberFrame::apex_noise_mm,
-                                        .stress_free_height_mm = height_mm});
-    return Estimate{{found.mooney_share}, diagonal({found.mooney_share_sd})};
-  };
-  return trial({"mooney_share"}, {share}, 20, RubberFrame::of, draw, fit);
 }
 
 /// Eight presses of a ball into a gel seen in one channel, with one grey level of noise.

@@ -29,9 +29,8 @@
 #include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/look_up.hpp"
-#include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/rim_pull.hpp"
 #include "fingerpad/force/traction.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/membrane/annulus.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
@@ -53,8 +52,6 @@
 
 #if __has_include(<Eigen/Core>)
 #include "fingerpad/calibrate/look_up.hpp"
-#include "fingerpad/force/membrane_wrench.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"
 #include "fingerpad/sim/foam_contact.hpp"

@@ -24,11 +24,11 @@
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/traction.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/published/segment_equilibrium.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/pressed_pad.hpp"
@@ -149,7 +149,7 @@ TEST_CASE("traction from every grid", "[adapt]") {
                                [&](const auto& flags) { check(stress_free, scene.dots, flags); });
 }
 
-TEST_CASE("six-axis force from every grid", "[adapt]") {
+TEST_CASE("printed six-axis force from every grid", "[adapt]") {
   const test::RoundPad<test::FilmSide> pad;
   auto rim = rim_of(pad);
   rim.count = 24;
@@ -157,9 +157,8 @@ TEST_CASE("six-axis force from every grid", "[adapt]") {
   const auto dots = rim.dots([&](double at) {
     return test::RimLoad{pad.tension(pad.radius_mm, test::pressed_mpa), 0.01 * std::cos(at)};
   });
-  const auto options = test::exact_options();
   const auto found = [&](const auto& fixed, const auto& beside) {
-    Wrench<> wrench(fixed, options);
+    published::SegmentEquilibrium<> wrench(fixed);
     return wrench(pad, beside, test::pressed_mpa);
   };
   const auto truth = found(border, dots);

@@ -98,11 +98,11 @@ def breaches(root):
 
 
 PLANTED = {
-    "a cell without a line": (PAGE, "| six-axis force: pressure | status | - |", "| six-axis force: pressure | status | refused |"),
-    "a method without lines": (PAGE, "| rim | refused |", "| brim | refused |"),
+    "a cell without a line": (PAGE, "| six-axis force: pressure | `no_pressure` | - |", "| six-axis force: pressure | `no_pressure` | refused |"),
+    "a method without lines": (PAGE, "| rim | refused or", "| brim | refused or"),
     "a row that is not there": (CELLS, "pressure in kPa", "pressure in tons"),
     "a row that was renamed": ("tests/mistakes/force.cpp", '{"absolute pressure"', '{"pressure of all"'),
-    "a status that no row says": (PAGE, "| `bad_side_dots` |", "| `no_shape` |"),
+    "a status that no row says": (PAGE, "`no_pressure` (none)", "`no_load` (none)"),
     "a reason that is not there": (PAGE, "not noticeable (15)", "not noticeable (99)"),
 }
 

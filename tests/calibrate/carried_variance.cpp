@@ -16,7 +16,6 @@
 #include "support/curves.hpp"
 #include "support/pad.hpp"
 #include "support/slipping_patch.hpp"
-#include "support/wrench_frames.hpp"
 
 using namespace fingerpad;
 
@@ -75,29 +74,6 @@ template <class S>
 Point2<S> force_at(const S& gain, const S& exponent, double measure, const Point2<double>& d) {
   const Shear shear(test::straight_map(S(reference_mm2), exponent, S(1.5), gain, S(30)));
   return shear(S(measure), {S(d.x), S(d.y)}, S(0)).tangential_force_n;
-}
-
-/// Force and moment of a frame by the stress-free length of the side dots and the pressure.
-template <class S>
-WrenchResult<S> wrench_of(const test::WrenchFrame& frame, const std::array<S, 2>& p) {
-  const auto& exact = test::exact_heights(frame.heights);
-  typename PadHeights<OrthographicCamera<S>>::Map heights(S(19.5), S(0.5));
-  heights.fill([&](Index i, Index j) { return S(exact.node(i, j).height_mm); },
-               [&](Index i, Index j, const auto&) {
-                 return S(exact.in_contact(exact.position_mm(j), exact.position_mm(i)) ? 1 : 0);
-               });
-  const auto as_dual = [](const test::Image<Point3<double>>& from) {
-    test::Image<Point3<S>> to(1, test::side_dots, {S(0), S(0), S(0)});
-    for (Index k = 0; k < test::side_dots; ++k) {
-      to(0, k) = {S(from(0, k).x), S(from(0, k).y), S(from(0, k).z)};
-    }
-    return to;
-  };
-  WrenchOptions<S> options;
-  options.side_dot_length_mm = p[0];
-  options.stress_free_inclination_rad = 1.0623;
-  Wrench<S> wrench(as_dual(test::rim_border()), options);
-  return wrench(heights, as_dual(frame.dots), p[1]);
 }
 
 /// A camera's distance, index, center (x, y) and pitch.
@@ -198,36 +174,6 @@ TEST_CASE("variance of a force by look-up is what repeated calibrations scatter 
   }
   // 400 trials determine a variance to 7 %
   CHECK(scatter / variance == Approx(1).margin(0.25));
-}
-
-TEST_CASE("force and moment follow side dots and pressure") {
-  for (const test::WrenchFrame& frame : test::wrench_frames()) {
-    CAPTURE(frame.name);
-    const std::array<double, 2> at = {WrenchOptions<double>{}.side_dot_length_mm,
-                                      frame.pressure_mpa};
-    const auto plain = wrench_of(frame, at);
-    const auto dual = wrench_of(frame, seeded(at));
-    const auto six = [](const auto& r) {
-      return std::array{r.force_n.x,     r.force_n.y,     r.force_n.z,
-                        r.moment_n_mm.x, r.moment_n_mm.y, r.moment_n_mm.z};
-    };
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const double step = 1e-5 * at[k];
-      const auto moved = [&](double by) {
-        auto p = at;
-        p[k] += by;
-        return six(wrench_of(frame, p));
-      };
-      const auto more = moved(step);
-      const auto less = moved(-step);
-      for (std::size_t axis = 0; axis < 6; ++axis) {
-        CAPTURE(k, axis);
-        CHECK(six(dual)[axis].value == Approx(six(plain)[axis]).epsilon(1e-12).margin(1e-12));
-        const double slope = (more[axis] - less[axis]) / (2 * step);
-        CHECK(six(dual)[axis].slopes[k] == Approx(slope).epsilon(1e-6).margin(1e-8 / at[k]));
-      }
-    }
-  }
 }
 
 TEST_CASE("slips of dots follow the camera") {

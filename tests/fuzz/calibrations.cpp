@@ -149,29 +149,13 @@ void try_dot_noise(Input& in) {
 }
 
 void try_rim(Input& in) {
-  const Index count = in.whole(4, 30);
-  const auto around = [&](double out_mm, double up_mm) {
-    Grid<Point3<double>> dots(1, count);
-    for (Index k = 0; k < count; ++k) {
-      const double at = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
-      dots.view()(0, k) = {(18.735 - out_mm) * std::cos(at), (18.735 - out_mm) * std::sin(at),
-                           up_mm};
-    }
-    return dots;
-  };
-  const auto border = around(0, 0);
-  RimCalibration<> calibration(border.view(), 18.735);
-  for (std::size_t level = 0; level < 3; ++level) {
-    auto dots = around(in.number(0.1, 0.5), in.number(0.6, 1.5));
-    for (Index k = in.whole(0, 4); k > 0; --k) {
-      dots.view()(0, in.whole(0, count - 1)).z = in.number(0, 2);
-    }
-    (void)calibration.add(level, dots.view(), in.number(0.005, 0.03));
+  std::vector<FreeApex> apexes;
+  for (Index k = in.whole(1, 3); k > 0; --k) {
+    apexes.push_back({in.number(0.005, 0.03), in.number(9, 16), in.number(0.001, 0.1)});
   }
-  const auto fit = in.flag() ? calibration.fit() : calibration.fit_modulus(in.number(0.5, 1.5));
-  require(!fit.ok() || (is_finite(fit.length_mm) && fit.length_mm > 0 &&
-                        is_finite(fit.modulus_n_per_mm) && fit.modulus_n_per_mm > 0),
-          "length and modulus are above 0");
+  const auto fit = fit_rim({18.735, in.number(9, 12)}, apexes);
+  require(!fit.ok() || (is_finite(fit.modulus_n_per_mm) && fit.modulus_n_per_mm > 0),
+          "a modulus is above 0");
 }
 
 void try_free_pad(Input& in) {

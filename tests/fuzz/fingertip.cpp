@@ -25,8 +25,8 @@ auto touched(auto& fingertip,
              double pressure_mpa,
              double time_s) {
   return fuzz::frame([&] {
-    return fingertip(frame.image.red, frame.image.green, frame.dots_px.view(),
-                     as_view(frame.side_dots_mm), pressure_mpa, time_s);
+    return fingertip(frame.image.red, frame.image.green, frame.dots_px.view(), pressure_mpa,
+                     time_s);
   });
 }
 
@@ -42,10 +42,6 @@ chain::PressedFrame damaged(Input& in) {
   }
   for (Index k = in.whole(0, 8); k > 0; --k) {
     frame.dots_px.view()(in.whole(0, 8), in.whole(0, 8)) = {in.number(-10, 70), in.number(-10, 55)};
-  }
-  for (Index k = in.whole(0, 8); k > 0; --k) {
-    auto& dot = frame.side_dots_mm(0, in.whole(0, frame.side_dots_mm.cols() - 1));
-    dot = {dot.x + in.number(-1, 1), in.number(-20, 20), in.number(-1, 3)};
   }
   return frame;
 }

@@ -3,7 +3,7 @@
 // What replay reads but videos, with any bytes in it: each file is read, or refused by one line.
 // with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
 // with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
-// with: examples/replay/io/side_dots.cpp examples/replay/io/true_forces.cpp
+// with: examples/replay/io/stress_free_dots.cpp examples/replay/io/true_forces.cpp
 // with: examples/replay/dots/file.cpp
 // with: examples/replay/foam/sensor.cpp examples/replay/foam/recording.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
@@ -20,8 +20,8 @@
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
 #include "replay/io/sensor.hpp"
-#include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
+#include "replay/io/stress_free_dots.hpp"
 #include "replay/io/true_forces.hpp"
 
 using fuzz::require;
@@ -47,8 +47,6 @@ void read(std::uint8_t kind, const std::filesystem::path& path) {
       (void)replay::read_depth_image(path);
       break;
     case 5:
-      (void)replay::read_side_dots(path, 10);
-      break;
     case 6:
       (void)replay::read_stress_free_dots(path, {8, 8});
       break;

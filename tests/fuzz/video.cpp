@@ -6,7 +6,7 @@
 // with: examples/replay/io/capture.cpp examples/replay/live/frames.cpp
 // with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
 // with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
-// with: examples/replay/io/side_dots.cpp examples/replay/io/true_forces.cpp
+// with: examples/replay/io/stress_free_dots.cpp examples/replay/io/true_forces.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs -lopencv_videoio
 // The thread that watches memory may hold a lock of the address sanitizer at a fork.
 // options: -rss_limit_mb=0

@@ -419,37 +419,21 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
   };
 }
 
-/// Side dots of a flat free rim, 36 at a radius of 18 mm, at two pressures.
-struct RimMistake {
-  double pressure = 1;       ///< unit over MPa
-  double unlike = 1;         ///< factor of the second pressure
-  double length = 1;         ///< unit over mm
-  bool exchanged = false;    ///< frames of the two pressures
-  bool upside_down = false;  ///< z points into the plate
-};
-std::function<std::string()> rim(const RimMistake& mistake, int levels = 2) {
+/// Apex heights of a free pad at four pressures, with factors on what is given.
+std::function<std::string()> rim(double pressure,
+                                 double apex,
+                                 double radius = 18.735,
+                                 std::size_t levels = 4,
+                                 double one_pressure = 1) {
   return [=] {
     return said([&] {
-      std::vector<Point3<double>> border;
-      for (int j = 0; j < 36; ++j) {
-        const double angle = 0.17453292519943295 * j;
-        border.push_back({18 * std::cos(angle), 18 * std::sin(angle), 0});
+      std::vector<FreeApex> apexes;
+      for (std::size_t k = 0; k < levels; ++k) {
+        const double mpa = 0.008 + 0.004 * static_cast<double>(k);
+        const double height_mm = FreePad<double>({18.735, 11}).rim(mpa / 0.5)->apex_mm;
+        apexes.push_back({mpa * pressure * (k == 1 ? one_pressure : 1), height_mm * apex});
       }
-      RimCalibration<> calibration(grid_of(border, 1, 36), 18);
-      for (int k = 0; k < levels; ++k) {
-        const double lambda = 1.1 + 0.08 * (mistake.exchanged ? levels - 1 - k : k);
-        const double true_lambda = 1.1 + 0.08 * k;
-        auto dots = border;
-        for (auto& d : dots) {
-          d = {d.x * mistake.length, d.y * mistake.length, 0.8 * lambda * mistake.length};
-          d.z = mistake.upside_down ? -d.z : d.z;
-        }
-        const double pull = 0.5 * (true_lambda - std::pow(true_lambda, -3));
-        const double pressure = 2 * pull / 18 * (k == 1 ? mistake.unlike : 1);
-        calibration.add(static_cast<std::size_t>(k), grid_of(dots, 1, 36),
-                        pressure * mistake.pressure);
-      }
-      return calibration.fit();
+      return fit_rim({radius, 11}, apexes);
     });
   };
 }
@@ -530,27 +514,16 @@ TEST_CASE("mistakes: threshold of the contact", "[mistakes]") {
 
 TEST_CASE("mistakes: the rim", "[mistakes]") {
   check({
-      {"none", rim({}), "ok"},
-      {"pressure in kPa", rim({.pressure = 1e3}), "give it in MPa"},
-      {"pressure in Pa", rim({.pressure = 1e6}), "give it in MPa"},
-      {"frames of the two pressures exchanged", rim({.exchanged = true}), "must be"},
-      {"one of two pressures absolute",  // two pressures fit any two numbers
-       rim({.unlike = 1 + 0.1 / 0.03}), "ok"},
-      {"one of four pressures absolute", rim({.unlike = 1 + 0.1 / 0.03}, 4),
-       "check pressures and dots"},
-      {"one of four pressures of another frame", rim({.unlike = 1.4}, 4), "do not balance"},
-      {"z into the plate", rim({.upside_down = true}), "must be"},
-      {"dots in m", rim({.length = 1e-3}), "must be"},
-      {"one pressure alone", rim({}, 1), "with one use fit_modulus"},
-      {"more border points than memory",
-       [] {
-         return test::refusal([] {
-           const LazyView border(1, std::numeric_limits<Index>::max(), [](Index, Index) {
-             return Point3<double>{18, 0, 0};
-           });
-           const RimCalibration<> calibration(border, 18.0);
-         });
-       },
-       "border columns = "},
+      {"none", rim(1, 1), "ok"},
+      {"one of four pressures absolute", rim(1, 1, 18.735, 4, 1 + 0.1 / 0.012), "inflated cap"},
+      {"one of four pressures of another frame", rim(1, 1, 18.735, 4, 1.4), "inflated cap"},
+      {"apex in m", rim(1, 1e-3), "inflated cap"},
+      {"apex in um", rim(1, 1e3), "must be"},
+      {"z into the plate", rim(1, -1), "must be"},
+      {"diameter for the radius", rim(1, 1, 2 * 18.735), "inflated cap"},
+      {"one pressure alone", rim(1, 1, 18.735, 1), "hardly differ"},
+      {"no pressure", rim(0, 1), "must be"},
+      // the modulus is in the unit of the pressure
+      {"pressure in kPa", rim(1e3, 1), "ok"},
   });
 }

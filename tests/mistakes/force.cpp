@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/force/wrench.hpp"
@@ -20,8 +19,8 @@
 #include "fingerpad/slip/friction_limit.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
-#include "support/pressed_pad.hpp"
 #include "support/refusal.hpp"
+#include "support/rim_marks.hpp"
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;
@@ -30,60 +29,39 @@ using Vector = Point3<double>;
 
 namespace {
 
-using Pad = test::RoundPad<test::FilmSide>;
-
-/// The shape as a caller might pass it: heights and slopes times factors, with the contact
-/// unchanged.
-struct Shape {
-  Pad pad;
-  double height = 1, slope = 1;
-  bool touches = true;
-
-  MembranePoint<double> operator()(double x, double y) const {
-    const auto true_one = pad(x, y);
-    return {height * true_one.height_mm, slope * true_one.along_x, slope * true_one.along_y};
-  }
-  bool in_contact(double x, double y) const { return touches && pad.in_contact(x, y); }
-};
-
-/// A frame of a drag and a twist at 10 kPa, with its estimator, for mistakes to change.
+/// A frame of a drag, with its estimator, for mistakes to change.
 struct Frame {
-  Pad pad;
-  test::RimOfDots rim = test::rim_of(pad);
-  Image<Vector> border = rim.borders();
-  Image<Vector> dots;
-  Shape shape{pad};
-  double pressure_mpa = test::pressed_mpa;
-  WrenchOptions<double> options;
+  const test::RimScene& scene = test::rim_scenes().front();
+  WrenchOptions options = test::SeenRim::options_of(scene, true);
+  double free_mpa = scene.frames.front().pressure_mpa, mpa = scene.frames.back().pressure_mpa;
+  std::vector<Point2<double>> free_px = seen(scene.frames.front()), px = seen(scene.frames.back());
 
-  Frame() {
-    const double tension = pad.tension(pad.radius_mm, pressure_mpa);
-    dots = rim.dots([&](double at) {
-      return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
-                           tension * (0.1 - 0.1 * std::sin(at))};
-    });
-    options.blur_mm = 0;
-    options.reach_mm = 1.6;
-  }
-
-  /// Column k takes the dot of column from(k).
-  template <class From>
-  void reorder(const From& from) {
-    const Image<Vector> as_it_was = dots;
-    for (Index k = 0; k < dots.cols(); ++k) {
-      dots(0, k) = as_it_was(0, (from(k) + dots.cols()) % dots.cols());
+  std::vector<Point2<double>> seen(const test::RimFrame& frame) const {
+    test::Random random(3);
+    std::vector<Point2<double>> all;
+    for (const auto& dot : frame.dots_mm) {
+      const auto at = pixel_of(scene.camera(), dot);
+      all.push_back({at.x + 0.02 * random.normal(), at.y + 0.02 * random.normal()});
     }
+    return all;
   }
-  void each_dot(const std::function<Vector(const Vector&)>& change) {
-    for (Vector& dot : dots.cells) {
-      dot = change(dot);
-    }
+  void each_dot(const std::function<Point2<double>(const Point2<double>&)>& change) {
+    std::transform(px.begin(), px.end(), px.begin(), change);
   }
 };
 
-WrenchResult<double> seen(const Frame& frame) {
-  Wrench<> wrench(frame.border, frame.options);
-  return wrench(frame.shape, frame.dots, frame.pressure_mpa);
+WrenchResult seen(const Frame& frame) {
+  Wrench<> wrench(frame.scene.camera(), frame.options);
+  std::vector<Mark> marks;
+  (void)wrench.begin(frame.free_mpa);
+  for (std::size_t k = 0; k < frame.free_px.size(); ++k) {
+    if (auto mark = wrench.place_in_free_picture(frame.free_px[k])) {
+      mark->px = frame.px[k];
+      mark->sd_px = 0.03;
+      marks.push_back(*mark);
+    }
+  }
+  return wrench(marks, frame.mpa);
 }
 
 struct WrenchMistake {
@@ -94,81 +72,32 @@ struct WrenchMistake {
 
 const std::vector<WrenchMistake> wrench_mistakes = {
     {"none", [](Frame&) {}, "ok"},
-    {"pressure in kPa", [](Frame& f) { f.pressure_mpa *= 1e3; }, "bad pressure"},
-    {"pressure in Pa", [](Frame& f) { f.pressure_mpa *= 1e6; }, "bad pressure"},
-    {"pressure in bar", [](Frame& f) { f.pressure_mpa *= 10; }, "pad has changed"},
-    {"absolute pressure", [](Frame& f) { f.pressure_mpa += 0.101325; }, "pad has changed"},
-    {"pressure below that of the air", [](Frame& f) { f.pressure_mpa = -0.01; }, "bad pressure"},
-    {"no pressure and no modulus",
-     [](Frame& f) { f.pressure_mpa = test::nan, f.options.modulus_n_per_mm.reset(); },
-     "bad pressure"},
-    {"side dots shifted by one", [](Frame& f) { f.reorder([](Index k) { return k + 1; }); },
-     "bad side dots"},
-    {"side dots the other way round", [](Frame& f) { f.reorder([](Index k) { return -k; }); },
-     "bad side dots"},
-    {"two halves of the side dots exchanged",
-     [](Frame& f) { f.reorder([](Index k) { return k + 36; }); }, "bad side dots"},
-    {"neighbouring side dots exchanged",
-     [](Frame& f) { f.reorder([](Index k) { return k % 2 == 0 ? k + 1 : k - 1; }); },
-     "bad side dots"},
-    {"side dots below the base",
-     [](Frame& f) { f.each_dot([](const Vector& p) {
-                      return Vector{p.x, p.y, -p.z};
+    {"pressure below that of the air", [](Frame& f) { f.mpa = -0.01; }, "no pressure"},
+    {"no pressure", [](Frame& f) { f.mpa = test::nan; }, "no pressure"},
+    {"pressure in kPa", [](Frame& f) { f.mpa *= 1e3, f.free_mpa *= 1e3; }, "no pressure"},
+    {"absolute pressure", [](Frame& f) { f.mpa += 0.101325, f.free_mpa += 0.101325; },
+     "no pressure"},
+    {"modulus in N/m", [](Frame& f) { f.options.modulus_n_per_mm *= 1e3; }, "no pressure"},
+    {"dots labelled the other way round", [](Frame& f) { std::reverse(f.px.begin(), f.px.end()); },
+     "not solved"},
+    {"dots shifted by one",
+     [](Frame& f) { std::rotate(f.px.begin(), f.px.begin() + 1, f.px.end()); }, "not solved"},
+    {"x and y of the dots exchanged",
+     [](Frame& f) { f.each_dot([](const Point2<double>& p) {
+                      return Point2<double>{p.y, p.x};
                     }); },
-     "bad side dots"},
-    {"x and y of the side dots exchanged",
-     [](Frame& f) { f.each_dot([](const Vector& p) {
-                      return Vector{p.y, p.x, p.z};
-                    }); },
-     "bad side dots"},
-    {"side dots in metres", [](Frame& f) { f.each_dot([](const Vector& p) { return 1e-3 * p; }); },
-     "bad side dots"},
-    {"side dots in px",
+     "not solved"},
+    {"dots in mm", [](Frame& f) { f.each_dot([](const Point2<double>& p) { return 0.08 * p; }); },
+     "not solved"},
+    {"dots as (0, 0) where they are lost",
      [](Frame& f) {
-       f.each_dot([](const Vector& p) { return Vector{320 + 12 * p.x, 240 + 12 * p.y, p.z}; });
+       std::fill(f.px.begin(), f.px.begin() + 90, Point2<double>{0, 0});
      },
-     "bad side dots"},
-    {"side dots as (0, 0, 0) where they are lost",
-     [](Frame& f) {
-       for (Index k = 0; k < 30; ++k) {
-         f.dots(0, k) = {0, 0, 0};
-       }
-     },
-     "bad side dots"},
-    {"side dots of the free pad without pressure",
-     [](Frame& f) { f.dots = f.rim.dots([](double) {
-                      return test::RimLoad{0, 0};
-                    }); },
-     "bad side dots"},
-    {"a side dot as far away as numbers go", [](Frame& f) { f.dots(0, 7).x = 1.7e308; }, "ok"},
-    {"side dots times 1e300",
-     [](Frame& f) { f.each_dot([](const Vector& p) { return 1e300 * p; }); }, "bad side dots"},
-    {"pressure of 1e300", [](Frame& f) { f.pressure_mpa = 1e300; }, "bad pressure"},
-    {"length of the side dots in metres", [](Frame& f) { f.options.side_dot_length_mm *= 1e-3; },
-     "bad side dots"},
-    {"length of the side dots twice as long", [](Frame& f) { f.options.side_dot_length_mm *= 2; },
-     "bad side dots"},
-    {"length of the side dots half as long", [](Frame& f) { f.options.side_dot_length_mm /= 2; },
-     "pad has changed"},
-    {"depth in metres", [](Frame& f) { f.shape.height = f.shape.slope = 1e-3; }, "no shape"},
-    {"depth in um", [](Frame& f) { f.shape.height = f.shape.slope = 1e3; }, "no shape"},
-    {"no depth anywhere",
-     [](Frame& f) {
-       f.shape.height = f.shape.slope = test::nan;
-       f.shape.touches = false;
-     },
-     "no shape"},
-    {"depth upside down", [](Frame& f) { f.shape.height = f.shape.slope = -1; }, "no shape"},
-    {"another frame's size",
-     [](Frame& f) {
-       f.dots = Image<Vector>(1, 71, {0, 0, 0});
-     },
-     "refused"},
-    {"rows and columns of the side dots exchanged",
-     [](Frame& f) {
-       f.dots = Image<Vector>(72, 1, {0, 0, 0});
-     },
-     "refused"},
+     "not solved"},
+    {"dots of a picture of another size",
+     [](Frame& f) { f.each_dot([](const Point2<double>& p) { return 0.5 * p; }); }, "not solved"},
+    {"hardly any dots", [](Frame& f) { f.px.resize(15), f.free_px.resize(15); }, "too few marks"},
+    {"a dot as far away as numbers go", [](Frame& f) { f.px[7].x = 1.7e308; }, "ok"},
 };
 
 }  // namespace
@@ -177,137 +106,10 @@ TEST_CASE("mistakes with the six-axis force", "[mistakes]") {
   for (const WrenchMistake& m : wrench_mistakes) {
     INFO(m.mistake);
     Frame frame;
-    // the modulus is that of calibrate/rim.hpp
-    frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
     m.make(frame);
     const auto r = seen(frame);
     CHECK(name_of(r.status) == m.said);
-    CHECK(r.ok() == (m.said == "ok"));
-    CHECK(is_finite(r.force_n) == r.ok());
-  }
-}
-
-TEST_CASE("mistakes with the six-axis force: a calibrated modulus", "[mistakes]") {
-  Frame frame;
-  frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
-  Wrench<> wrench(frame.border, frame.options);
-  const auto at = [&](double pressure_mpa) {
-    return wrench(frame.shape, frame.dots, pressure_mpa).status;
-  };
-  CHECK(at(0.01) == WrenchStatus::ok);
-  CHECK(at(0.01 + 0.101325) == WrenchStatus::pad_has_changed);
-  // undetectable without a calibration: a stiffer membrane at a higher pressure looks the same
-  frame.options.modulus_n_per_mm.reset();
-  Wrench<> knows_no_modulus(frame.border, frame.options);
-  CHECK(knows_no_modulus(frame.shape, frame.dots, 0.01 + 0.101325).ok());
-}
-
-TEST_CASE("mistakes with the six-axis force: what the modulus tells", "[mistakes]") {
-  const auto solved = [](const std::function<void(Frame&)>& change) {
-    Frame frame;
-    frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
-    change(frame);
-    return seen(frame);
-  };
-  const auto right = solved([](Frame&) {});
-  REQUIRE(right.ok());
-  const auto aged = [](double stiffer, double longer) {
-    return [=](Frame& frame) {
-      frame.rim.modulus_n_per_mm *= stiffer;
-      frame.rim.length_mm *= longer;
-      const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
-      frame.dots = frame.rim.dots([&](double at) {
-        return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
-                             tension * (0.1 - 0.1 * std::sin(at))};
-      });
-    };
-  };
-  const auto modulus = [&](const WrenchResult<double>& r) {
-    return r.modulus_n_per_mm / right.modulus_n_per_mm;
-  };
-  const auto shifted = [&](const WrenchResult<double>& r) {
-    return norm(r.force_n - right.force_n) / norm(right.force_n);
-  };
-  // stiffer and softer: forces come from pressure and shape, and the modulus shows the change
-  for (const double stiffer : {1.4, 1 / 1.4, 2.0, 0.5}) {
-    const auto r = solved(aged(stiffer, 1));
-    const bool little = stiffer < 1.5 && 1 < 1.5 * stiffer;
-    CHECK(r.status == (little ? WrenchStatus::ok : WrenchStatus::pad_has_changed));
-    CHECK(r.has_force());
-    CHECK(shifted(r) < 1e-6);
-    CHECK(modulus(r) == Approx(stiffer).epsilon(1e-6));
-  }
-  // a rim that has become longer without stress: 5 % halve F_xy and the modulus
-  const auto longer = solved(aged(1, 1.05));
-  CHECK(longer.status == WrenchStatus::pad_has_changed);
-  CHECK(longer.has_force());
-  CHECK(longer.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
-  CHECK(longer.force_n.x / right.force_n.x == Approx(0.54).margin(0.01));
-  CHECK(modulus(longer) == Approx(0.5).margin(0.01));
-  const auto longest = solved(aged(1, 1.2));
-  CHECK(longest.status == WrenchStatus::pad_has_changed);
-  CHECK_FALSE(longest.has_force());
-  // undetected: the error of F_xy is within the bound
-  for (const double length : {0.96, 0.97, 0.98, 0.99, 1.01, 1.02, 1.03, 1.04}) {
-    const auto r = solved(aged(1, length));
-    INFO(length << ": mu t " << modulus(r) << ", F_x " << r.force_n.x / right.force_n.x << ", "
-                << name_of(r.status));
-    CHECK(r.ok() == (modulus(r) < 1.5 && 1 < 1.5 * modulus(r)));
-    CHECK((r.ok() || std::abs(length - 1) > 0.015));
-    CHECK((!r.ok() || std::abs(std::log(r.force_n.x / right.force_n.x)) < std::log(1.5)));
-  }
-  // a gauge that reads a fifth too much
-  const auto pressed = solved([](Frame& f) { f.pressure_mpa *= 1.2; });
-  CHECK(modulus(pressed) == Approx(1.2).epsilon(1e-3));
-  // slopes with an error of a fifth have almost no effect; heights have a little, undetected
-  for (const double off : {0.8, 1.2}) {
-    CHECK(shifted(solved([=](Frame& f) { f.shape.slope = off; })) < 0.001);
-    const auto r = solved([=](Frame& f) { f.shape.height = f.shape.slope = off; });
-    CHECK(shifted(r) < 0.03);
-    CHECK(modulus(r) == Approx(1).epsilon(0.002));
-  }
-}
-
-TEST_CASE("mistakes with the six-axis force: by the modulus alone an aged membrane is not told",
-          "[mistakes]") {
-  // the same frame with its pressure and shape shows it: pad_has_changed
-  Frame frame;
-  frame.options.modulus_n_per_mm = frame.rim.modulus_n_per_mm;
-  const auto loaded = [&](double stiffer, double longer) {
-    auto rim = frame.rim;
-    rim.modulus_n_per_mm *= stiffer;
-    rim.length_mm *= longer;
-    const double tension = frame.pad.tension(frame.pad.radius_mm, frame.pressure_mpa);
-    return rim.dots([&](double at) {
-      return test::RimLoad{tension * (1 + 0.05 * std::cos(at)),
-                           tension * (0.1 - 0.1 * std::sin(at))};
-    });
-  };
-  Wrench<> wrench(frame.border, frame.options);
-  const auto told = [&](double stiffer, double longer) {
-    const auto dots = loaded(stiffer, longer);
-    const auto by_modulus = wrench.by_modulus(dots, frame.pressure_mpa);
-    const auto by_rim = wrench(frame.shape, dots, test::nan);  // without a gauge
-    CHECK(by_modulus.ok());
-    CHECK(by_rim.ok());
-    CHECK(wrench(frame.shape, dots, frame.pressure_mpa).ok() == (stiffer * longer == 1));
-    return std::array{by_modulus.force_n.x, by_rim.force_n.x, by_rim.pressure_mpa};
-  };
-  const auto right = told(1, 1), stiffer = told(2, 1), longer = told(1, 1.05);
-  CHECK(stiffer[0] / right[0] == Approx(0.5).margin(0.05));  // shear of half the stretch
-  CHECK(stiffer[2] / right[2] == Approx(0.5).margin(0.01));
-  CHECK(stiffer[1] / right[1] == Approx(0.5).margin(0.01));
-  CHECK(longer[0] / right[0] == Approx(1).margin(0.1));
-  CHECK(longer[2] / right[2] == Approx(2).margin(0.1));
-}
-
-TEST_CASE("mistakes with the six-axis force: a modulus of another unit", "[mistakes]") {
-  const Frame frame;
-  for (const double modulus : {500.0, 0.0005, 0.5e6}) {  // N/m, kN/mm, N/km
-    WrenchOptions<double> options = frame.options;
-    options.modulus_n_per_mm = modulus;
-    CHECK(test::begins_with(test::refusal([&] { const Wrench<> r(frame.border, options); }),
-                            "WrenchOptions: modulus_n_per_mm = "));
+    CHECK(r.ok() == is_finite(r.force_n));
   }
 }
 
@@ -443,10 +245,6 @@ TEST_CASE("mistakes with the friction ratio", "[mistakes]") {
     CHECK(limit({1, absurd}, 0.9, RatioUpdate::fresh).status == FrictionLimitStatus::no_load);
     CHECK_FALSE(std::isinf(limit({1, 0.5}, 0.9, RatioUpdate::fresh).margin));
   }
-  WrenchResult<double> wrench;
-  wrench.force_n = on_pad;
-  CHECK(wrench.normal_force_n() == 1);
-  CHECK(wrench.tangential_force_n().x == 0.8);
 }
 
 namespace {
@@ -656,9 +454,7 @@ TEST_CASE(
 
 TEST_CASE("one convention of signs: a press", "[mistakes]") {
   // a vector is the force of the object on the pad, z toward the object; a normal force > 0 presses
-  const auto wrench = seen(Frame());
-  CHECK(wrench.force_n.z < 0);
-  CHECK(wrench.normal_force_n() == -wrench.force_n.z);
+  CHECK(seen(Frame()).force_n.z < 0);
   const auto scene = test::traction_scene("press");
   TractionField field(test::stress_free_dots());
   const Vector on_pad = field(scene.dots, scene.contact, scene.pressure_mpa).force_n;
@@ -677,7 +473,7 @@ TEST_CASE("one convention of signs: a press", "[mistakes]") {
   CHECK(std::isnan(ratio(0.5, on_pad.z, false)));
 }
 
-TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes]") {
+TEST_CASE("mistakes with forces: membranes larger than any", "[mistakes]") {
   const auto said = [](Index rows, Index cols) {
     const LazyView dots(rows, cols, [](Index i, Index j) {
       return Vector{1.5 * static_cast<double>(j), 1.5 * static_cast<double>(i), 9};
@@ -688,7 +484,4 @@ TEST_CASE("mistakes with forces: rims and membranes larger than any", "[mistakes
   CHECK(test::begins_with(said(enormous, 9), "TractionField: rows = "));
   CHECK(test::begins_with(said(9, enormous), "TractionField: cols = "));
   CHECK(test::begins_with(said(1000000, 1000000), "TractionField: rows times cols = "));
-  const LazyView border(1, enormous, [](Index, Index) { return Vector{18, 0, 0}; });
-  CHECK(test::begins_with(test::refusal([&] { const Wrench<> r(border); }),
-                          "Wrench: border columns = "));
 }

@@ -9,8 +9,7 @@ using namespace chain;
 TEST_CASE("the whole chain: a frame allocates nothing", "[chain]") {
   const PressedFrames frames(240, 320, 2);
   FingertipOptions options = frames.options();
-  options.six_axes.emplace();
-  options.six_axes->cap.base_radius_mm = options.wrench.base_radius_mm;
+  options.wrench.emplace();
   Fingertip fingertip(options);
   const Inputs first = frames[0].view(), second = frames[1].view();
   const long before = test::allocations();
@@ -19,6 +18,6 @@ TEST_CASE("the whole chain: a frame allocates nothing", "[chain]") {
   (void)fingertip.depth_mm()(120, 160);
   (void)fingertip.contact_mask()(120, 160);
   CHECK(test::allocations() == before);
-  CHECK(a.wrench.ok());
-  CHECK(b.wrench.ok());
+  CHECK(a.contact.ok());
+  CHECK(b.contact.ok());
 }

@@ -44,7 +44,7 @@ class Copy {
       for (int k = 0; k < frames; ++k) {
         fs::copy_file(data / bundled / frame(k), folder() / frame(k));
       }
-      for (const char* file : {"signals.csv", "side_dots.csv", "forces.csv"}) {
+      for (const char* file : {"signals.csv", "forces.csv"}) {
         edit_table(file, [](Row& row) { return std::stoi(row[0]) < frames; });
       }
     }
@@ -238,37 +238,6 @@ const std::vector<Mistake> mistakes = {
     {"time missing",
      [](const Copy& c) { c.edit_table("signals.csv", [](Row& r) { return r[0] != "1"; }); },
      "time_s: missing for 1 of 3 frames"},
-    {"side dots in m",
-     [](const Copy& c) {
-       for (std::size_t k = 2; k < 8; ++k) {
-         c.scale("side_dots.csv", k, 1e-3);
-       }
-     },
-     "side_dots.csv, border: the border points are 0.01"},
-    {"side dots below the base", [](const Copy& c) { c.scale("side_dots.csv", 7, -1); },
-     "lie below the base"},
-    {"side dots shifted by one",
-     [](const Copy& c) {
-       std::vector<Row> all;
-       c.edit_table("side_dots.csv", [&](Row& r) {
-         all.push_back(r);
-         return true;
-       });
-       std::size_t at = 0;
-       c.edit_table("side_dots.csv", [&](Row& r) {
-         const std::size_t other = at + 1 < all.size() && all[at + 1][0] == r[0] ? at + 1 : at;
-         std::copy(all[other].begin() + 5, all[other].end(), r.begin() + 5);
-         ++at;
-         return true;
-       });
-     },
-     "indices are shifted by one"},
-    {"side dots at another length",
-     [](const Copy& c) {
-       c.replace("sensor.json", "\"side_dot_length_mm\": 0.79995",
-                 "\"side_dot_length_mm\": 0.00079995");
-     },
-     "rim.side_dot_length_mm is 0.0008"},
     {"reference depth in m",
      [](const Copy& c) { c.edit_picture("reference_depth.tiff", [](cv::Mat& d) { d /= 1000; }); },
      "If the unit is m, multiply by 1000"},

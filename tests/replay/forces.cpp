@@ -4,15 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "replay/chain.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
 #include "replay/io/true_forces.hpp"
 #include "replay/replay.hpp"
@@ -63,19 +59,6 @@ class Workplace {
   void replace(const std::string& file, const std::string& old, const std::string& with) const {
     test::replace_in(recording() / file, old, with);
   }
-  /// Keeps the lines of side_dots.csv for which `good(frame, index)` is true.
-  template <class Good>
-  void keep_side_dots(const Good& good) const {
-    std::istringstream in(read("side_dots.csv"));
-    std::string kept, line;
-    std::getline(in, line);
-    kept = line + "\n";
-    while (std::getline(in, line)) {
-      const auto cells = test::cells_of(line);
-      kept += good(std::stoi(cells[0]), std::stoi(cells[1])) ? line + "\n" : "";
-    }
-    write("side_dots.csv", kept);
-  }
 
  private:
   test::ScratchFolder root_;
@@ -125,22 +108,26 @@ bool is_empty(const Line& line, const std::vector<std::string>& names) {
 }  // namespace
 
 TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
-  // against the finite elements; from noisy 8-bit frames and side dots accurate to 5 um
+  // against the finite elements; places of the dots from a single frame of the free pad
   const Workplace work;
   const auto found = work.run({});
   const auto truth = table_of(bundled / "membrane" / "load.csv");
   REQUIRE(found.size() == 11);
   REQUIRE(truth.size() == 11);
   double error[6] = {};
+  int within = 0;
   for (std::size_t k = 0; k < truth.size(); ++k) {
     for (std::size_t c = 0; c < 6; ++c) {
-      error[c] +=
-          std::abs(number(found[k], "wrench_" + components[c]) - number(truth[k], components[c])) /
-          static_cast<double>(truth.size());
+      const double off =
+          std::abs(number(found[k], "wrench_" + components[c]) - number(truth[k], components[c]));
+      const std::string sd =
+          "wrench_" + components[c].substr(0, 2) + "_sd" + components[c].substr(2);
+      error[c] += off / static_cast<double>(truth.size());
+      within += off < 3 * number(found[k], sd) ? 1 : 0;
     }
   }
   INFO("mean errors " << error[0] << ' ' << error[1] << ' ' << error[2] << " N, " << error[3] << ' '
-                      << error[4] << ' ' << error[5] << " N m");
+                      << error[4] << ' ' << error[5] << " N m; " << within << " of 66 within 3 sd");
   const double largest_n = 1.8, largest_press_n = 3.1, largest_n_m = 0.0232;
   CHECK(error[0] < 0.05 * largest_n);
   CHECK(error[1] < 0.05 * largest_n);
@@ -148,47 +135,25 @@ TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
   CHECK(error[3] < 0.15 * largest_n_m);
   CHECK(error[4] < 0.15 * largest_n_m);
   CHECK(error[5] < 0.06 * largest_n_m);
-  // a free pad has no load
-  for (const std::string& name : components) {
-    CHECK(number(found[0], "wrench_" + name) == 0);
-  }
-}
-
-TEST_CASE("replay: the rim is pulled inward and up, and as hard as the force says", "[wrench]") {
-  replay::Options options;
-  options.recording = bundled;
-  replay::Recording recording = replay::open_recording(bundled);
-  replay::Chain chain(recording, options);
-  recording.frames.seek(5);
-  const replay::WrenchFrame frame = chain(5, recording.frames.next()).wrench;
-  REQUIRE(frame.present);
-  CHECK_FALSE(frame.result.by_modulus);
-  REQUIRE(frame.tension.size() == 72);
-  const double radius_mm = 18.735, rim_mm = 2 * CV_PI * radius_mm;
-  fingerpad::Point3<double> sum{0, 0, 0};
-  for (const replay::RimTension& rim : frame.tension) {
-    const auto& t = rim.n_per_mm;
-    CHECK(t.z > 0);
-    const double inward = -(t.x * rim.border_mm.x + t.y * rim.border_mm.y) / radius_mm;
-    const double along = (t.y * rim.border_mm.x - t.x * rim.border_mm.y) / radius_mm;
-    CHECK(inward > 2 * std::abs(along));
-    sum = {sum.x + t.x * rim_mm / 72, sum.y + t.y * rim_mm / 72, sum.z + t.z * rim_mm / 72};
-  }
-  const double bearing_n = 0.020365 * CV_PI * radius_mm * radius_mm;
-  const auto& force = frame.result.force_n;
-  CHECK(sum.x == Approx(force.x).margin(0.02));
-  CHECK(sum.y == Approx(force.y).margin(0.02));
-  CHECK(sum.z - bearing_n == Approx(force.z).margin(0.05));
 }
 
 TEST_CASE("replay: what the force needs may be missing", "[wrench]") {
   const Workplace work;
-  SECTION("no side dots") {
-    fs::remove(work.recording() / "side_dots.csv");
+  SECTION("no dots") {
+    work.replace("sensor.json",
+                 R"("dots": { "rows": 21, "cols": 21, "pitch_mm": 1.5, "diameter_mm": 0.7 },)", "");
     CHECK(is_empty(work.run({5, 6}, true)[0]));
-    CHECK_FALSE(fs::exists(work.out() / "pictures" / "rim_000005.png"));
     CHECK_FALSE(fs::exists(work.out() / "pictures" / "wrench.png"));
-    CHECK(fs::exists(work.out() / "pictures" / "traction_000005.png"));
+  }
+  SECTION("no modulus, no inclination") {
+    work.replace("sensor.json", "\"membrane_modulus_n_per_mm\": 0.5, ", "");
+    CHECK(is_empty(work.run({0, 1})[0]));
+    work.replace("sensor.json", "stress_free_inclination_rad\": 1.0618",
+                 "membrane_modulus_n_per_mm\": 0.5");
+    CHECK(is_empty(work.run({0, 1})[0]));
+  }
+  SECTION("no frame of the free pad") {
+    CHECK(is_empty(work.run({5, 6})[0]));
   }
   SECTION("no rim in sensor.json") {
     const std::string text = work.read("sensor.json");
@@ -204,54 +169,23 @@ TEST_CASE("replay: what the force needs may be missing", "[wrench]") {
     CHECK(line.at("time_s") == "0.5");
   }
   SECTION("no pressure in one frame, no signals in another") {
-    work.write("signals.csv", "frame,time_s,pressure_mpa\n5,0.5,0.020365\n6,0.6,\n");
-    const auto lines = work.run({5, 8});
+    work.write("signals.csv", "frame,time_s,pressure_mpa\n0,0,0.016\n1,0.1,\n");
+    const auto lines = work.run({0, 3});
     CHECK(is_full(lines[0]));
     CHECK(is_empty(lines[1]));
     CHECK(is_empty(lines[2]));
   }
-  SECTION("side dots that were not found, in one frame a few, then half, then all") {
-    const double all_n = number(work.run({5, 6})[0], "wrench_fz_n");
-    work.keep_side_dots([](int frame, int index) {
-      return frame < 5 || (frame == 5 && index % 5 != 0) || (frame == 6 && index % 2 != 0);
-    });
-    const auto lines = work.run({5, 8});
-    CHECK(number(lines[0], "wrench_fz_n") == Approx(all_n).epsilon(0.03));
-    CHECK(is_empty(lines[1]));
-    CHECK(is_empty(lines[2]));
-  }
 }
 
-TEST_CASE("replay: how side dots are carried to the rim is said in sensor.json", "[wrench]") {
+TEST_CASE("replay: the rubber is said in sensor.json", "[wrench]") {
   const Workplace work;
-  const double carried_n_m = number(work.run({8, 9})[0], "wrench_my_nm");
-  work.replace("sensor.json", ", \"stress_free_inclination_rad\": 1.0618", "");
-  const double chord_n_m = number(work.run({8, 9})[0], "wrench_my_nm");
-  CHECK(chord_n_m != carried_n_m);
-  CHECK(chord_n_m == Approx(carried_n_m).epsilon(0.3));
-  // a given modulus is used for frames whose shape does not suffice
-  work.replace("sensor.json", "0.79995", "0.79995, \"membrane_modulus_n_per_mm\": 0.7");
-  CHECK(number(work.run({8, 9})[0], "wrench_my_nm") == chord_n_m);
-}
-
-TEST_CASE("replay: a modulus stands for the gauge, and the rubber is said in sensor.json",
-          "[wrench]") {
-  const Workplace work;
-  work.replace("sensor.json", "0.79995", "0.79995, \"membrane_modulus_n_per_mm\": 0.5");
-  const Line gauged = work.run({8, 9})[0];
-  work.replace("sensor.json", "0.79995", "0.79995, \"mooney_share\": 0.3");
-  const Line of_rubber = work.run({8, 9})[0];
+  const Line plain = work.run({0, 9})[8];
+  work.replace("sensor.json", "\"rim\": {", "\"rim\": { \"mooney_share\": 0.3,");
+  const Line of_rubber = work.run({0, 9})[8];
   // (1 - m + m / lambda^2) s instead of s, at about 15 % stretch
-  const double change = number(of_rubber, "wrench_fx_n") / number(gauged, "wrench_fx_n");
-  CHECK(change < 0.98);
+  const double change = number(of_rubber, "wrench_fx_n") / number(plain, "wrench_fx_n");
+  CHECK(change < 0.99);
   CHECK(change > 0.85);
-  work.replace("sensor.json", ", \"mooney_share\": 0.3", "");
-  work.write("signals.csv", "frame,time_s\n0,0\n8,0.8\n");
-  const auto lines = work.run({0, 9});
-  CHECK(number(lines[0], "wrench_fz_n") == 0);
-  for (const char* axis : {"wrench_fx_n", "wrench_fz_n", "wrench_my_nm"}) {
-    CHECK(number(lines[8], axis) == Approx(number(gauged, axis)).epsilon(0.06));
-  }
 }
 
 TEST_CASE("replay: pictures of forces, and its own files are known again", "[wrench]") {
@@ -261,8 +195,8 @@ TEST_CASE("replay: pictures of forces, and its own files are known again", "[wre
       fs::remove(work.recording() / "forces.csv");  // no truth to draw
     }
     work.run({6, 8}, true);
-    for (const char* name : {"forces.png", "wrench.png", "rim_000006.png", "rim_000007.png",
-                             "traction_000006.png", "traction_000007.png"}) {
+    for (const char* name :
+         {"forces.png", "wrench.png", "traction_000006.png", "traction_000007.png"}) {
       const cv::Mat picture = cv::imread((work.out() / "pictures" / name).string());
       INFO(name);
       CHECK(picture.cols > 400);
@@ -285,49 +219,13 @@ TEST_CASE("replay: rims that cannot be are refused with what is wrong", "[wrench
     CHECK(line.find('\n') == std::string::npos);
     CHECK_FALSE(fs::exists(work.out()));
   };
-  const std::string header = "frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z\n";
-  SECTION("a border off the rim") {
-    work.replace("sensor.json", "\"base_radius_mm\": 18.735", "\"base_radius_mm\": 25");
-    says("border point");
-  }
-  SECTION("too few") {
-    work.keep_side_dots([](int, int index) { return index < 5; });
-    says("border columns = 5");
-  }
   SECTION("an inclination that is none") {
-    work.replace("sensor.json", "1.0618", "2.5");
-    says("stress_free_inclination_rad = 2.5");
+    work.replace("sensor.json", "1.0618", "3.5");
+    says("height_mm = -");
   }
   SECTION("a key that is none") {
     work.replace("sensor.json", "stress_free_inclination_rad", "inclination");
     says("unknown key rim.inclination (known keys: side_dot_length_mm, ");
-  }
-  SECTION("another header") {
-    work.write("side_dots.csv", "frame,index\n0,0\n");
-    says("side_dots.csv: line 1: must be frame,index,border_x,");
-  }
-  SECTION("an empty file") {
-    work.write("side_dots.csv", "");
-    says("side_dots.csv: is empty");
-    work.write("side_dots.csv", header);
-    says("side_dots.csv: lists no side dots");
-  }
-  SECTION("lines that cannot be") {
-    const std::string good = "0,0,18.735,0,0,18.4,0,0.8\n";
-    work.write("side_dots.csv", header + good + "0,1,18.735,0,0,18.4,0\n");
-    says("line 3: has 7 values, must have 8");
-    work.write("side_dots.csv", header + good + "0,1,18.735,0,0,18.4,nan,0.8\n");
-    says("line 3: dot_y 'nan' is not a number");
-    work.write("side_dots.csv", header + good + "\n11,0,18.735,0,0,18.4,0,0.8\n");
-    says("line 4: frame '11' is not one of the frames 0 to 10");
-    work.write("side_dots.csv", header + good + "0,-1,18.735,0,0,18.4,0,0.8\n");
-    says("line 3: index '-1' is not one of the side dots");
-    work.write("side_dots.csv", header + good + "0,1.5,18.735,0,0,18.4,0,0.8\n");
-    says("line 3: index '1.5' is not");
-    work.write("side_dots.csv", header + good + good);
-    says("line 3: side dot 0 of frame 0 is given twice");
-    work.write("side_dots.csv", header + good + "0,2,18.735,0,0,18.4,0,0.8\n");
-    says("side dot 1 is in no frame");
   }
   SECTION("stress-free dots") {
     work.write("stress_free_dots.csv", "row,col,x_mm,y_mm,z_mm\n21,0,1,2,3\n");
@@ -349,21 +247,6 @@ TEST_CASE("replay: signals keep times as they are written and pressures as numbe
   CHECK(signals.pressure_mpa(2) == 0.016);
   CHECK(std::isnan(signals.pressure_mpa(4)));
   CHECK(std::isnan(signals.pressure_mpa(3)));
-}
-
-TEST_CASE("replay: the border is the mean over the frames") {
-  const Workplace work;
-  work.write("side_dots.csv",
-             "frame,index,border_x,border_y,border_z,dot_x,dot_y,dot_z\n"
-             "0,1,1,2,3,4,5,6\n0,0,0,0,0,0,0,0\n3,1,3,2,1,7,8,9\n");
-  const auto all = replay::read_side_dots(work.recording() / "side_dots.csv", 4);
-  REQUIRE(all);
-  CHECK(all->border_mm.size() == cv::Size(2, 1));
-  CHECK(all->border_mm(0, 1) == cv::Vec3d(2, 2, 2));
-  CHECK(all->dots_mm.at(3)(0, 1) == cv::Vec3d(7, 8, 9));
-  CHECK(std::isnan(all->dots_mm.at(3)(0, 0)[1]));
-  CHECK(all->dots_mm.count(1) == 0);
-  CHECK_FALSE(replay::read_side_dots(work.recording() / "none.csv", 4));
 }
 
 TEST_CASE("replay: forces by look-up of the bundled recording", "[look-up]") {

@@ -118,7 +118,7 @@ grep -q "^frames  *$((7 - ${frames%:*}))$" "$work/table" || fail "the printed ta
 grep -Eq "^mean error   0\.[0-9]+ N normal, 0\.0[0-9] N tangential, 0\.[0-9]+ N mm moment" \
   "$work/table" || fail "the printed errors of the look-up: $(cat "$work/table")"
 for file in frames.csv pictures/{montage,stick_ratio,forces,wrench}.png \
-            pictures/{depth,side,stick,rim,traction}_000006.png; do
+            pictures/{depth,side,stick,traction}_000006.png; do
   [[ -s $work/out/$file ]] || fail "$file is missing"
 done
 [[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"

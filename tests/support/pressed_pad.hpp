@@ -10,8 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/wrench.hpp"
+#include "height_map.hpp"
 #include "pad.hpp"
 #include "soap_film.hpp"
 
@@ -25,7 +24,7 @@ struct RoundPad : Profile {
   double y_mm = 0;
 
   template <class S>
-  fingerpad::MembranePoint<S> operator()(const S& x, const S& y) const {
+  MembranePoint<S> operator()(const S& x, const S& y) const {
     const double u = static_cast<double>(x) - x_mm;
     const double v = static_cast<double>(y) - y_mm;
     const double r = std::hypot(u, v);
@@ -219,15 +218,6 @@ Wrench6 wrench_of(const RimOfDots& rim, const Load& load, double pressure_mpa) {
 
 /// Pressure of all wrench tests with an exact shape: 10 kPa.
 constexpr double pressed_mpa = 0.01;
-
-template <class S = double>
-fingerpad::WrenchOptions<S> exact_options() {
-  fingerpad::WrenchOptions<S> options;
-  options.line_step_mm = S(0.1);
-  options.blur_mm = S(0);
-  options.reach_mm = S(1);
-  return options;
-}
 
 /// Rim of a pad for its side dots.
 template <class Pad>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/force/membrane_wrench.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "support/finite_elements.hpp"
 #include "support/generators.hpp"
 
@@ -77,10 +77,10 @@ inline const std::vector<RimScene>& rim_scenes() {
 /// A scene as a camera sees it.
 class SeenRim {
  public:
-  using Wrench = fingerpad::MembraneWrench<>;
+  using Wrench = fingerpad::Wrench<>;
 
   SeenRim(const RimScene& scene,
-          fingerpad::MembraneWrenchOptions options,
+          fingerpad::WrenchOptions options,
           double noise_px,
           std::uint64_t seed,
           int free_frames = 16)
@@ -98,8 +98,8 @@ class SeenRim {
     }
   }
 
-  static fingerpad::MembraneWrenchOptions options_of(const RimScene& scene, bool loose_rim) {
-    fingerpad::MembraneWrenchOptions options;
+  static fingerpad::WrenchOptions options_of(const RimScene& scene, bool loose_rim) {
+    fingerpad::WrenchOptions options;
     options.cap = scene.cap;
     options.modulus_n_per_mm = scene.modulus_n_per_mm;
     options.modulus_sd_share = options.pressure_sd_share = 0;
@@ -113,7 +113,7 @@ class SeenRim {
       marks[i].px = pixel(scene_.frames[k].dots_mm[number_[i]], noise_px_);
     }
   }
-  fingerpad::MembraneWrenchResult fit(std::size_t k) {
+  fingerpad::WrenchResult fit(std::size_t k) {
     show(k);
     return wrench(marks, scene_.frames[k].pressure_mpa);
   }

@@ -13,9 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/force/pad_heights.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "finite_elements.hpp"
+#include "height_map.hpp"
 
 namespace test {
 
@@ -98,15 +97,15 @@ inline Image<Point3<double>> rows_of(const Image<Point3<double>>& dots, Index ro
 }
 
 /// Exact shapes of the finite-element membranes.
-inline const fingerpad::PadHeights<>::Map& exact_heights(const std::string& name) {
-  static std::map<std::string, fingerpad::PadHeights<>::Map> all;
+inline const HeightMap<>& exact_heights(const std::string& name) {
+  static std::map<std::string, HeightMap<>> all;
   const auto found = all.find(name);
   if (found != all.end()) {
     return found->second;
   }
   const Membrane membrane(name);
   const TrueContact contact(name);
-  fingerpad::PadHeights<>::Map map(19.5, 0.5);
+  HeightMap<> map(19.5, 0.5);
   map.fill(
       [&](Index i, Index j) {
         const double x = map.position_mm(j), y = map.position_mm(i);

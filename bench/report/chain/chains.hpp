@@ -13,7 +13,6 @@ using fingerpad::FingertipOptions;
 using fingerpad::FingertipResult;
 using fingerpad::Index;
 using fingerpad::Point2;
-using fingerpad::Point3;
 
 /// The cheapest chain for a flat contact on a pad with dark dots, whose edge is not placed.
 inline FingertipOptions lean(FingertipOptions options) {
@@ -31,12 +30,11 @@ inline FingertipOptions in_samples(FingertipOptions options, int step) {
 struct Inputs {
   fingerpad::StridedView<const std::uint8_t> red, green;
   fingerpad::StridedView<const Point2<double>> dots_px;
-  fingerpad::StridedView<const Point3<double>> side_dots_mm;
   double pressure_mpa = 0;
 };
 
 inline FingertipResult touch_of(Fingertip& fingertip, const Inputs& in) {
-  return fingertip(in.red, in.green, in.dots_px, in.side_dots_mm, in.pressure_mpa);
+  return fingertip(in.red, in.green, in.dots_px, in.pressure_mpa);
 }
 
 }  // namespace chain

@@ -3,7 +3,7 @@
 #pragma once
 // Frames for the whole chain with the truth of every result. A membrane in equilibrium is pressed
 // flat by a plate that drags its dots back and forth and rotates them without slip. Colours are
-// 8-bit with one grey level of noise; side dots pull as the plate pushes.
+// 8-bit with one grey level of noise.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +16,8 @@
 #include "support/soap_film.hpp"
 
 namespace chain {
+
+using fingerpad::Point3;
 
 constexpr double pressure_mpa = test::pressed_mpa;
 constexpr double pitch_mm = 1.5;  ///< of the dots
@@ -36,25 +38,6 @@ struct Plate {
   }
 };
 
-/// Pull along the rim that balances the plate's force along the pad about the summit.
-struct RimPull {
-  double normal, lean, shear, turning, direction_rad;
-
-  RimPull(const test::RoundPad<test::FilmSide>& pad, const Plate& plate) {
-    const double sine = pad.sine(pad.radius_mm), cosine = std::sqrt(1 - sine * sine);
-    const double high = pad.height(0);
-    normal = pad.tension(pad.radius_mm, pressure_mpa);
-    shear = 0.2 * normal * std::hypot(plate.shift_x_mm, plate.shift_y_mm);
-    turning = normal * plate.turn_rad;
-    lean = -high * shear / (pad.radius_mm * sine - high * cosine);
-    direction_rad = std::atan2(plate.shift_y_mm, plate.shift_x_mm);
-  }
-  test::RimLoad operator()(double at) const {
-    return {normal + lean * std::cos(at - direction_rad),
-            turning - shear * std::sin(at - direction_rad)};
-  }
-};
-
 /// One frame with its truth.
 struct PressedFrame {
   Plate plate;
@@ -62,12 +45,10 @@ struct PressedFrame {
   test::Image<double> depth_mm;  ///< NaN outside of the pad
   test::Frame<std::uint8_t> image;
   test::Image<Point2<double>> dots_px;
-  test::Image<Point3<double>> side_dots_mm;
-  test::Wrench6 wrench;
 
   Inputs view() const {
     return {fingerpad::as_view(image.red), fingerpad::as_view(image.green), dots_px.view(),
-            side_dots_mm.view(), pressure_mpa};
+            pressure_mpa};
   }
   double contact_area_mm2() const { return std::numbers::pi * plate.contact_mm * plate.contact_mm; }
 };
@@ -86,7 +67,6 @@ class PressedFrames {
       frames_.push_back(made(Plate(k, count), static_cast<std::uint64_t>(k + 1)));
     }
     free_dots_ = free_dots();
-    rim_ = rim_of(frames_.front().membrane).borders();
   }
 
   std::size_t size() const { return frames_.size(); }
@@ -97,7 +77,6 @@ class PressedFrames {
   FingertipOptions options() const {
     FingertipOptions f{pad_.camera, pad_.fluid, pad_.reference<float>()};
     f.free_dots_mm = free_dots_.view();
-    f.rim_mm = rim_.view();
     // windows and rings of the default width on the pad, which is set for 640 x 480; 109 px is the
     // most without samples
     const double scale = static_cast<double>(pad_.cols) / 640;
@@ -181,22 +160,13 @@ class PressedFrames {
         }
       }
     }
-    const test::RimOfDots rim = rim_of(membrane);
-    const RimPull pull(membrane, plate);
-    return {plate,
-            membrane,
-            depth,
-            pad_.frame<std::uint8_t>(depth, 1, seed),
-            dots,
-            rim.dots(pull),
-            wrench_of(rim, pull, pressure_mpa)};
+    return {plate, membrane, depth, pad_.frame<std::uint8_t>(depth, 1, seed), dots};
   }
 
   test::Pad pad_;
   Index dots_;
   std::vector<PressedFrame> frames_;
   test::Image<Point3<double>> free_dots_;
-  test::Image<Point3<double>> rim_;
 };
 
 }  // namespace chain

@@ -12,11 +12,9 @@
 
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/published/look_up.hpp"
 #include "row.hpp"
 #include "support/curves.hpp"
-#include "support/pressed_pad.hpp"
 
 namespace hard {
 
@@ -54,99 +52,6 @@ inline Row below_range() {
                }
                return f;
              });
-}
-
-/// The tensions that a load at the contact adds on a sphere, marched up from the rim.
-///   U = N_phi sin^2(phi) and V = N_phi,theta sin^2(phi)
-/// are the parts of an analytic function of ln tan(phi / 2) and theta. Both are known at the rim
-/// and marched upward by Runge-Kutta steps, with Fourier sums for the derivatives around the axis.
-template <class S>
-std::vector<S> marched_up(std::vector<S> u, std::vector<S> v, const S& way, int steps) {
-  const std::size_t n = u.size();
-  std::vector<S> slope_of(n, S(0));  // cot(k pi / n) / 2, with alternating signs
-  for (std::size_t k = 1; k < n; ++k) {
-    using std::tan;
-    const S share = S(static_cast<int>(k)) / S(static_cast<int>(n));
-    const S at = boost::math::constants::pi<S>() * share;
-    slope_of[k] = S(k % 2 == 0 ? 0.5 : -0.5) / tan(at);
-  }
-  const auto along = [&](const std::vector<S>& of) {
-    std::vector<S> slope(n, S(0));
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 1; k < n; ++k) {
-        slope[i] = slope[i] + slope_of[k] * of[(i + n - k) % n];
-      }
-    }
-    return slope;
-  };
-  const S h = way / S(steps);
-  const auto plus = [&](const std::vector<S>& a, const S& by, const std::vector<S>& b) {
-    std::vector<S> out(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      out[i] = a[i] + by * b[i];
-    }
-    return out;
-  };
-  for (int step = 0; step < steps; ++step) {
-    std::vector<S> u_sum = u, v_sum = v, u_at = u, v_at = v;
-    for (const auto& [share, next] :
-         {std::array<double, 2>{1.0 / 6, 0.5}, {1.0 / 3, 0.5}, {1.0 / 3, 1.0}, {1.0 / 6, 0.0}}) {
-      const auto du = along(v_at), dv = along(u_at);  // u_s = v_theta, v_s = -u_theta
-      u_sum = plus(u_sum, S(h * S(share)), du);
-      v_sum = plus(v_sum, S(-h * S(share)), dv);
-      u_at = plus(u, S(h * S(next)), du);
-      v_at = plus(v, S(-h * S(next)), dv);
-    }
-    u = u_sum;
-    v = v_sum;
-  }
-  return u;
-}
-
-inline Row march_from_rim() {
-  return row(
-      "membrane force",
-      "lateral load: both tractions of the rim marched up to the contact, 36 lines, of the "
-      "mean tension; fingerpad: lateral force by the rim's directions, relative",
-      "the pulls of the rim up to one factor", []<class S>(S) {
-        Forms f;
-        const std::size_t n = 36;
-        std::vector<S> u(n), v(n);
-        std::vector<Digits50> exact_u(n), exact_v(n);
-        for (std::size_t i = 0; i < n; ++i) {
-          const double at = 2 * std::numbers::pi * static_cast<double>(i) / 36;
-          exact_u[i] = Digits50(u[i] = S(1 + 0.3 * std::cos(at)));
-          exact_v[i] = Digits50(v[i] = S(-0.3 * std::sin(at)));
-        }
-        // the m-th harmonic grows by (tan(phi_0 / 2) / tan(phi_1 / 2))^m = 3.3^m
-        const S way = S(1.19);
-        const auto up = marched_up(u, v, way, 40);
-        const auto exact_up = marched_up(exact_u, exact_v, Digits50(way), 40);
-        for (std::size_t i = 0; i < n; ++i) {
-          f.naive.add_absolute(up[i], exact_up[i]);
-        }
-        const test::RoundPad<test::FilmSide> pad;
-        test::RimOfDots rim = test::rim_of(pad);
-        rim.count = 24;
-        const auto load = [&](double angle) {
-          const double even = pad.tension(pad.radius_mm, test::pressed_mpa);
-          return test::RimLoad{even * (1 + 0.1 * std::cos(angle)), -0.1 * even * std::sin(angle)};
-        };
-        const auto force = [&]<class T>(T) {
-          const auto in_s = [](const auto& from) {
-            test::Image<Point3<T>> to(from.rows(), from.cols(), {T(0), T(0), T(0)});
-            for (std::size_t k = 0; k < from.cells.size(); ++k) {
-              const auto& p = from.cells[k];
-              to.cells[k] = {T(S(p.x)), T(S(p.y)), T(S(p.z))};
-            }
-            return to;
-          };
-          fingerpad::Wrench<T> wrench(in_s(rim.borders()), test::exact_options<T>());
-          return wrench(pad, in_s(rim.dots(load)), T(S(test::pressed_mpa))).force_n;
-        };
-        f.stable.add_relative(force(S(0)).x, force(Digits50(0)).x);
-        return f;
-      });
 }
 
 /// Twice the area of a triangle from its edges, by Heron's formula.

@@ -44,54 +44,6 @@ void check_pressure(const Recording& recording, Findings& findings) {
   }
 }
 
-void check_side_dots(const Recording& recording, Findings& findings) {
-  if (!recording.side_dots) {
-    return;
-  }
-  const SpaceGrid& border = recording.side_dots->border_mm;
-  std::vector<double> radii, heights, angles, lengths;
-  for (const cv::Vec3d& at : border) {
-    radii.push_back(std::hypot(at[0], at[1]));
-  }
-  for (const auto& [frame, dots] : recording.side_dots->dots_mm) {
-    for (int k = 0; k < dots.cols; ++k) {
-      const cv::Vec3d& rim = border(0, k);
-      const cv::Vec3d& dot = dots(0, k);
-      if (std::isfinite(dot[0] + dot[1] + dot[2])) {
-        heights.push_back(dot[2] - rim[2]);
-        angles.push_back(
-            std::atan2(rim[0] * dot[1] - rim[1] * dot[0], rim[0] * dot[0] + rim[1] * dot[1]));
-        lengths.push_back(cv::norm(dot - rim));
-      }
-    }
-  }
-  const double radius = median_of(radii);
-  const double base = recording.sensor.pad.base_radius_mm;
-  if (!(radius > 0.8 * base && radius < 1.25 * base)) {
-    findings.push_back({"side_dots.csv, border",
-                        "the border points are " + short_number(radius) +
-                            " mm from the axis, but pad.base_radius_mm is " + short_number(base),
-                        "Give them in mm, from the center of the plate's inner face."});
-  } else if (median_of(heights) < 0) {
-    findings.push_back({"side_dots.csv, dot_z", "the side dots lie below the base",
-                        "Let z point from the plate into the pad, toward the object."});
-  } else if (std::abs(median_of(angles)) > CV_PI / border.cols) {
-    findings.push_back({"side_dots.csv, index",
-                        "the side dots are not beside the border points of the same index",
-                        "Check whether the indices are shifted by one."});
-  } else if (recording.sensor.rim) {
-    const double ratio = median_of(lengths) / recording.sensor.rim->side_dot_length_mm;
-    if (!(ratio > 1.0 / 3 && ratio < 3)) {
-      findings.push_back({"side_dots.csv, dot",
-                          "the side dots are " + short_number(median_of(lengths)) +
-                              " mm from the rim, but "
-                              "rim.side_dot_length_mm is " +
-                              short_number(recording.sensor.rim->side_dot_length_mm),
-                          "Give both in mm."});
-    }
-  }
-}
-
 void check_look_up(const Recording& recording, Findings& findings) {
   if (!recording.sensor.force) {
     return;
@@ -113,8 +65,8 @@ void check_look_up(const Recording& recording, Findings& findings) {
     outside("by_area.to_mm2", force.by_area->to, 1e-3 * base_mm2, base_mm2, "mm^2");
   }
   if (force.by_depth) {
-    outside("by_depth.to_mm", force.by_depth->to, 0.01 * pad.apex_height_mm,
-            pad.apex_height_mm, "mm");
+    outside("by_depth.to_mm", force.by_depth->to, 0.01 * pad.apex_height_mm, pad.apex_height_mm,
+            "mm");
   }
   if (force.shear) {
     outside("shear.to_mm", force.shear->map.force.to, 0.001 * pad.base_radius_mm,
@@ -212,7 +164,6 @@ void check_clock(const std::string& place,
 
 void check_numbers(const Recording& recording, Findings& findings) {
   check_pressure(recording, findings);
-  check_side_dots(recording, findings);
   check_look_up(recording, findings);
   check_true_forces(recording, findings);
 }

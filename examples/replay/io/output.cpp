@@ -63,7 +63,7 @@ void close_file(std::ofstream& stream, const fs::path& file) {
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|slide\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
-      R"(pictures/(depth|side|contact|stick|rim|traction|slide|live)_\d{6}\.png|)"
+      R"(pictures/(depth|side|contact|stick|traction|slide|live)_\d{6}\.png|)"
       R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip|slide)\.png)");
   return std::regex_match(relative, ours);
 }
@@ -224,9 +224,8 @@ void FramesCsv::write(const FrameRow& row) {
   }
   const auto& stick = row.stick;
   if (row.has_dots) {
-    stream_ << ',' << stick.dots_in_contact() << ','
-            << cell_of(stick.stick_ratio) << ',' << (stick.updated() ? 1 : 0)
-            << ',' << cell_of(stick.ratio_sd) << ','
+    stream_ << ',' << stick.dots_in_contact() << ',' << cell_of(stick.stick_ratio) << ','
+            << (stick.updated() ? 1 : 0) << ',' << cell_of(stick.ratio_sd) << ','
             << words_of(row.slip_evidence);
   } else {
     stream_ << ",,,,,";

@@ -58,10 +58,10 @@ struct FrameRow {
   fingerpad::SlipEvidence slip_evidence = fingerpad::SlipEvidence::none;
   ForceFrame force;  ///< by look-up
   std::optional<TrueForce> truth;
-  fingerpad::WrenchResult<double> wrench;  ///< not ok(), empty cells, if there is no result
-  std::array<double, 6> wrench_sd;         ///< N and N mm
-  double pressure_mpa = 0;                 ///< NaN if unknown
-  bool pad_has_changed = false;            ///< its light differs from the reference
+  fingerpad::WrenchResult wrench;   ///< not ok(), empty cells, if there is no result
+  std::array<double, 6> wrench_sd;  ///< N and N mm
+  double pressure_mpa = 0;          ///< NaN if unknown
+  bool pad_has_changed = false;     ///< its light differs from the reference
 
   bool has_wrench() const { return wrench.ok(); }
 };

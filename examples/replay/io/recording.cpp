@@ -189,7 +189,6 @@ Recording open_recording(const fs::path& folder) {
   recording.signals = read_signals(folder / "signals.csv", recording.frames.size());
   if (!recording.sensor.dots_only) {
     recording.true_forces = read_true_forces(folder / "forces.csv", recording.frames.size());
-    recording.side_dots = read_side_dots(folder / "side_dots.csv", recording.frames.size());
     if (const auto& dots = recording.sensor.dots) {
       recording.stress_free_dots =
           read_stress_free_dots(folder / "stress_free_dots.csv", {dots->cols, dots->rows});

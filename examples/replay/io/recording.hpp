@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// A recording on disk: sensor.json, the free pad, the frames (a folder or a video), the signals and
-// the side dots at the rim. open_recording() checks all that can be checked before the first frame.
+// A recording on disk: sensor.json, the free pad, the frames (a folder or a video) and the
+// signals. open_recording() checks all that can be checked before the first frame.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
@@ -12,8 +12,8 @@
 
 #include "replay/io/images.hpp"
 #include "replay/io/sensor.hpp"
-#include "replay/io/side_dots.hpp"
 #include "replay/io/signals.hpp"
+#include "replay/io/stress_free_dots.hpp"
 #include "replay/io/true_forces.hpp"
 #include "replay/io/video.hpp"
 
@@ -56,7 +56,6 @@ struct Recording {
   FrameSource free_frames;  ///< more frames of the free pad; may be empty
   Signals signals;
   std::map<int, TrueForce> true_forces;  ///< by frame; may be empty
-  std::optional<SideDots> side_dots;
   std::optional<SpaceGrid> stress_free_dots;
 };
 

@@ -160,13 +160,12 @@ bool names_depth(const Section& root) {
 Rim read_rim(const Section& root) {
   const Section section = root.section(
       "rim",
-      {{"side_dot_length_mm", "stress-free length from the rim to its side dot, mm"},
+      {{"side_dot_length_mm", "length to the side dots, which nothing here reads"},
        {"membrane_modulus_n_per_mm", "shear modulus times thickness of the membrane, N/mm"},
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
        {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
        {"side_dots", "rows of side dots in the pictures, which nothing here reads"}});
   Rim rim;
-  rim.side_dot_length_mm = section.positive("side_dot_length_mm");
   if (section.has("membrane_modulus_n_per_mm")) {
     rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
   }

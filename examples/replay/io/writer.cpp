@@ -74,9 +74,6 @@ void Writer::write_pictures(const Scene& scene) {
     write_picture(file("pictures", "side_", scene, ".png"), painter_->side(scene));
     write_picture(file("pictures", "contact_", scene, ".png"),
                   painter_->contact(scene, initial_dots_));
-    if (scene.wrench.present) {
-      write_picture(file("pictures", "rim_", scene, ".png"), painter_->rim(scene));
-    }
     if (scene.traction.present()) {
       write_picture(file("pictures", "traction_", scene, ".png"), painter_->traction(scene));
     }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Painter's pictures of forces: the membrane's tension at the rim, and the load on each dot.
+// Painter's picture of forces: the load on each dot.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,9 +13,6 @@
 
 namespace replay {
 namespace {
-
-const Ink pull_ink(150, 80, 0);
-const Ink force_ink(255, 255, 255);
 
 /// Paints an arrow, or nothing if it is too short to be visible.
 void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& colour) {
@@ -51,64 +48,7 @@ void paint_arrow_legend(Sheet& sheet, double length, const std::string& words, c
   paint_arrow(sheet.canvas, {words_begin - 10 - length, y}, {words_begin - 10, y}, 2, colour);
 }
 
-std::string words_of_wrench(const WrenchFrame& wrench) {
-  const auto& result = wrench.result;
-  if (result.status == fingerpad::WrenchStatus::no_contact) {
-    return "no contact: no force";
-  }
-  if (!result.ok()) {
-    return std::string("no force: ") + name_of(result.status);
-  }
-  const auto& f = result.force_n;
-  return format("force (%.2f, %.2f, %.2f) N", rounded(f.x), rounded(f.y), rounded(f.z)) +
-         (result.by_modulus ? ", from the given modulus" : "");
-}
-
 }  // namespace
-
-cv::Mat Painter::rim(const Scene& scene) const {
-  Sheet sheet("Pull of the membrane on the rim", caption(scene.frame, scene.time_s),
-              scene.image.size(), 92);
-  Canvas& canvas = sheet.canvas;
-  const Place& place = sheet.place;
-  paint_image(canvas, place.box, scene.image, brightest_);
-  paint_outline(canvas, place, scene.contact_mask, 1.2);
-  double largest = 0;
-  for (const RimTension& rim : scene.wrench.tension) {
-    const double pull = std::hypot(rim.n_per_mm.x, rim.n_per_mm.y);
-    largest = std::isfinite(pull) ? (std::max)(largest, pull) : largest;
-  }
-  const double unit = round_below(largest > 0 ? largest : 1.0);
-  const double px_per_unit = 36;
-  for (const RimTension& rim : scene.wrench.tension) {
-    const auto px = fingerpad::pixel_of(camera_, rim.border_mm);
-    const Spot from = place.of(px.x, px.y);
-    canvas.disc(from, 2.2, pull_ink);
-    if (std::isfinite(rim.n_per_mm.x + rim.n_per_mm.y)) {
-      const Spot to = from + px_per_unit / unit * Spot(rim.n_per_mm.x, rim.n_per_mm.y);
-      paint_arrow(canvas, from, to, 1.8, pull_ink);
-    }
-  }
-  const auto& result = scene.wrench.result;
-  if (result.status == fingerpad::WrenchStatus::ok) {
-    const Spot middle = place.of(camera_.center_x_px, camera_.center_y_px);
-    const Spot push(result.force_n.x, result.force_n.y);
-    paint_arrow(canvas, middle, middle + 40 * push, 4, force_ink);
-  }
-  paint_scale_bar(canvas, place, scene.image.cols, camera_.pitch_mm);
-  if (largest > 0) {
-    paint_arrow_legend(sheet, px_per_unit, format("%g N/mm along the plate", unit), pull_ink);
-  }
-  sheet.write(50, words_of_wrench(scene.wrench));
-  if (result.status == fingerpad::WrenchStatus::ok) {
-    const auto& m = result.moment_n_mm;
-    sheet.write(74,
-                format("moment (%.1f, %.1f, %.1f) N mm", rounded(m.x), rounded(m.y), rounded(m.z)));
-    canvas.text({place.right(), place.below() + 50}, "white: force along the plate, 40 px per N",
-                letter, ink::grey, Align::right);
-  }
-  return canvas.finished();
-}
 
 cv::Mat Painter::traction(const Scene& scene) const {
   constexpr double margin = 76;

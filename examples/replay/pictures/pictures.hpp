@@ -57,8 +57,6 @@ class Painter {
   cv::Mat side(const Scene& scene) const;
   /// `initial_px` are the free pad's dots.
   cv::Mat contact(const Scene& scene, const DotGrid& initial_px) const;
-  /// Tension of the membrane at the rim, over the camera's image.
-  cv::Mat rim(const Scene& scene) const;
   /// Contact pressure and shear at the dots, over the camera's image.
   cv::Mat traction(const Scene& scene) const;
   /// One column per scene: camera image, depth, its change, side view. For `scale` see Canvas.

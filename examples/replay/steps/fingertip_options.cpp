@@ -58,30 +58,6 @@ fingerpad::StridedView<const Point3<double>> kept(const SpaceGrid& points,
   return {cells.data(), points.rows, points.cols, points.cols};
 }
 
-/// What the six axes from printed dots lack; "" if nothing.
-std::string lacking_for_six_axes(const Recording& recording) {
-  const auto& rim = recording.sensor.rim;
-  return recording.sensor.dots_only          ? "the recording has dots only"
-         : !rim                              ? "sensor.json has no section rim"
-         : !rim->membrane_modulus_n_per_mm   ? "sensor.json has no rim.membrane_modulus_n_per_mm"
-         : !rim->stress_free_inclination_rad ? "sensor.json has no rim.stress_free_inclination_rad"
-         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
-                                                   : "";
-}
-
-/// What those from shape and side dots lack.
-std::string lacking_for_side_dots(const Recording& recording) {
-  const auto& rim = recording.sensor.rim;
-  const bool has_pressure =
-      !recording.signals.pressures_mpa.empty() || (rim && rim->membrane_modulus_n_per_mm);
-  return recording.sensor.dots_only ? "the recording has dots only"
-         : !recording.side_dots     ? "side_dots.csv is missing"
-         : !rim                     ? "sensor.json has no section rim"
-         : !has_pressure
-             ? "signals.csv has no pressure and sensor.json has no rim.membrane_modulus_n_per_mm"
-             : "";
-}
-
 }  // namespace
 
 FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px) {
@@ -106,28 +82,25 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   if (sensor.force) {
     set_look_up(*sensor.force, options);
   }
-  if (lacking_for_six_axes(recording).empty() && !free_dots_px.empty()) {
+  if (lacking_for_wrench(recording).empty() && !free_dots_px.empty()) {
     const double radius_mm = sensor.pad.base_radius_mm;
-    options.six_axes.emplace();
-    options.six_axes->cap = {radius_mm,
-                             radius_mm * std::tan(*sensor.rim->stress_free_inclination_rad / 2),
-                             sensor.rim->mooney_share};
-    options.six_axes->modulus_n_per_mm = *sensor.rim->membrane_modulus_n_per_mm;
-  }
-  if (lacking_for_side_dots(recording).empty()) {
-    options.rim_mm = kept(recording.side_dots->border_mm, settings.rim_mm);
-    options.wrench.base_radius_mm = sensor.pad.base_radius_mm;
-    options.wrench.side_dot_length_mm = sensor.rim->side_dot_length_mm;
-    options.wrench.stress_free_inclination_rad = sensor.rim->stress_free_inclination_rad;
-    options.wrench.mooney_share = sensor.rim->mooney_share;
-    options.wrench.modulus_n_per_mm = sensor.rim->membrane_modulus_n_per_mm;
+    options.wrench.emplace();
+    options.wrench->cap = {radius_mm,
+                           radius_mm * std::tan(*sensor.rim->stress_free_inclination_rad / 2),
+                           sensor.rim->mooney_share};
+    options.wrench->modulus_n_per_mm = *sensor.rim->membrane_modulus_n_per_mm;
   }
   return settings;
 }
 
 std::string lacking_for_wrench(const Recording& recording) {
-  const std::string lacking = lacking_for_six_axes(recording);
-  return lacking.empty() ? "" : lacking_for_side_dots(recording);
+  const auto& rim = recording.sensor.rim;
+  return recording.sensor.dots_only          ? "the recording has dots only"
+         : !rim                              ? "sensor.json has no section rim"
+         : !rim->membrane_modulus_n_per_mm   ? "sensor.json has no rim.membrane_modulus_n_per_mm"
+         : !rim->stress_free_inclination_rad ? "sensor.json has no rim.stress_free_inclination_rad"
+         : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
+                                                   : "";
 }
 
 }  // namespace replay

@@ -30,7 +30,6 @@ auto with_colors(const cv::Mat& image, const Use& use) {
 struct FingertipSettings {
   fingerpad::FingertipOptions options;
   std::vector<fingerpad::Point3<double>> free_dots_mm = {};
-  std::vector<fingerpad::Point3<double>> rim_mm = {};
 
   explicit FingertipSettings(fingerpad::FingertipOptions of) : options(std::move(of)) {}
   FingertipSettings(FingertipSettings&&) = default;
@@ -53,7 +52,6 @@ class RecordedFingertip {
   /// See fingerpad::Fingertip.
   fingerpad::FingertipResult operator()(const cv::Mat& frame,
                                         const DotGrid& dots_px,
-                                        const SpaceGrid& side_dots_mm,
                                         double pressure_mpa,
                                         double time_s);
 

@@ -57,13 +57,8 @@ class Step : public FingertipStep {
   Step(const Recording& recording, const FingertipOptions& options)
       : recording_(recording),
         with_dots_(options.free_dots_mm.rows() > 0),
-        with_six_axes_(options.six_axes.has_value()),
-        fingertip_(options) {
-    if (options.rim_mm.rows() > 0) {
-      no_side_dots_.create(recording.side_dots->border_mm.size());
-      no_side_dots_ = cv::Vec3d::all(not_known);
-    }
-  }
+        with_wrench_(options.wrench.has_value()),
+        fingertip_(options) {}
 
   FingertipFrame operator()(int frame,
                             const cv::Mat& image,
@@ -72,8 +67,7 @@ class Step : public FingertipStep {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const FingertipResult touch = with_colors(image, [&](const auto& red, const auto& green) {
-      return fingertip_(red, green, dots_px, side_dots_of(frame),
-                        recording_.signals.pressure_mpa(frame), time_s);
+      return fingertip_(red, green, dots_px, recording_.signals.pressure_mpa(frame), time_s);
     });
     FingertipFrame out;
     out.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -92,14 +86,6 @@ class Step : public FingertipStep {
   }
 
  private:
-  const SpaceGrid& side_dots_of(int frame) const {
-    if (no_side_dots_.empty()) {
-      return no_side_dots_;
-    }
-    const auto found = recording_.side_dots->dots_mm.find(frame);
-    return found == recording_.side_dots->dots_mm.end() ? no_side_dots_ : found->second;
-  }
-
   FrameDots dots_of(const DotGrid& dots_px, const FingertipResult& touch) const {
     FrameDots dots;
     dots.dots_px = dots_px;
@@ -152,31 +138,17 @@ class Step : public FingertipStep {
 
   WrenchFrame wrench_of(const FingertipResult& touch) const {
     WrenchFrame wrench;
-    wrench.present = with_six_axes_ || !no_side_dots_.empty();
+    wrench.present = with_wrench_;
     wrench.result = touch.wrench;
-    const fingerpad::MembraneWrenchResult& dots = touch.six_axes;
-    if (dots.ok()) {
-      const bool touches = !touch.contact.ok() || touch.contact.in_contact();
-      wrench.result.status =
-          touches ? fingerpad::WrenchStatus::ok : fingerpad::WrenchStatus::no_contact;
-      wrench.result.force_n = dots.force_n;
-      wrench.result.moment_n_mm = dots.moment_n_mm;
-      wrench.result.by_modulus = true;
-      for (Eigen::Index k = 0; k < 6; ++k) {
-        wrench.sd[static_cast<std::size_t>(k)] = std::sqrt(dots.covariance(k, k));
-      }
-    }
-    for (int column = 0; column < no_side_dots_.cols; ++column) {
-      const cv::Vec3d& at = recording_.side_dots->border_mm(0, column);
-      wrench.tension.push_back({{at[0], at[1], at[2]}, fingertip_.rim_tension(column)});
+    for (Eigen::Index k = 0; wrench.result.ok() && k < 6; ++k) {
+      wrench.sd[static_cast<std::size_t>(k)] = std::sqrt(wrench.result.covariance(k, k));
     }
     return wrench;
   }
 
   const Recording& recording_;
-  bool with_dots_, with_six_axes_;
+  bool with_dots_, with_wrench_;
   Fingertip fingertip_;
-  SpaceGrid no_side_dots_;  ///< of a frame without them; empty without six-axis force
 };
 
 }  // namespace

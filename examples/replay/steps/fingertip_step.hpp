@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Applies the library's pipeline/fingertip.hpp to a frame with its dots, side dots and pressure;
+// Applies the library's pipeline/fingertip.hpp to a frame with its dots and pressure;
 // only this step uses that header.
 #include <memory>
 #include <opencv2/core.hpp>

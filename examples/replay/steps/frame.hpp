@@ -25,9 +25,9 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// Stick and slip of the dots in a frame.
 struct StickFrame {
-  cv::Mat_<uchar> states;        ///< DotState of each dot; empty if the recording has no dots
-  cv::Mat_<cv::Vec2d> slips_mm;  ///< of each dot since the reference, NaN if unknown; empty if
-                                 ///< this frame has no new result
+  cv::Mat_<uchar> states;           ///< DotState of each dot; empty if the recording has no dots
+  cv::Mat_<cv::Vec2d> slips_mm;     ///< of each dot since the reference, NaN if unknown; empty if
+                                    ///< this frame has no new result
   fingerpad::StickResult<> result;  ///< uses friction if forces are known
   fingerpad::SlipEvidence evidence = fingerpad::SlipEvidence::none;
 
@@ -57,18 +57,11 @@ struct ForceFrame {
   double moment_n_mm = not_known;  ///< about the normal through the contact's center
 };
 
-/// Tension of the membrane at a point of the rim.
-struct RimTension {
-  fingerpad::Point3<double> border_mm;
-  fingerpad::Point3<double> n_per_mm;
-};
-
 struct WrenchFrame {
   bool present = false;  ///< false: the recording lacks data for the force
-  fingerpad::WrenchResult<double> result;
-  /// Standard deviations of force and moment, N and N mm; NaN if side dots gave them.
+  fingerpad::WrenchResult result;
+  /// Standard deviations of force and moment, N and N mm.
   std::array<double, 6> sd = {not_known, not_known, not_known, not_known, not_known, not_known};
-  std::vector<RimTension> tension;  ///< around the rim
 };
 
 }  // namespace replay

@@ -15,11 +15,10 @@ RecordedFingertip::~RecordedFingertip() = default;
 
 fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,
                                                          const DotGrid& dots_px,
-                                                         const SpaceGrid& side_dots_mm,
                                                          double pressure_mpa,
                                                          double time_s) {
   return with_colors(frame, [&](const auto& red, const auto& green) {
-    return whole_->fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s);
+    return whole_->fingertip(red, green, dots_px, pressure_mpa, time_s);
   });
 }
 

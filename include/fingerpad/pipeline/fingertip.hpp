@@ -6,8 +6,8 @@
 // only combines the methods; to use a single method, include that method's header.
 //
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
-//   auto touch = fingertip(red, green, dots_px, side_dots_mm, pressure_mpa, time_s);
-//   if (touch.ok()) { ... touch.six_axes.force_n ... }
+//   auto touch = fingertip(red, green, dots_px, pressure_mpa, time_s);
+//   if (touch.ok()) { ... touch.wrench.force_n ... }
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -57,25 +57,18 @@ class Fingertip {
       find_flat_area_.emplace(camera_, red_.rows, red_.cols,
                               o.flat_area.value_or(FlatAreaOptions{}));
     }
-    if (dots_ && o.six_axes) {
-      six_axes_.emplace(o.camera, o);
-    }
-    if (o.rim_mm.rows() * o.rim_mm.cols() > 0) {
-      force_.emplace(camera_, *pad_, o);
+    if (dots_ && o.wrench) {
+      wrench_.emplace(o.camera, o);
     }
   }
 
   /// Processes one frame: red and green of 8 or 16 bit, the printed dots in px (NaN: not found),
-  /// the side dots in mm, MPa above the surrounding air, and the time in s of the stick ratio; NaN:
-  /// not known. What no stage takes may be left out.
-  template <grid Red,
-            grid Green,
-            dot_grid DotsPx = StridedView<const Point2<double>>,
-            spatial_dot_grid SideDots = StridedView<const Point3<double>>>
+  /// MPa above the surrounding air, and the time in s of the stick ratio; NaN: not known. What no
+  /// stage takes may be left out.
+  template <grid Red, grid Green, dot_grid DotsPx = StridedView<const Point2<double>>>
   FingertipResult operator()(const Red& red,
                              const Green& green,
                              const DotsPx& dots_px = {},
-                             const SideDots& side_dots_mm = {},
                              double pressure_mpa = not_a_number<double>(),
                              double time_s = not_a_number<double>()) {
     FingertipResult touch;
@@ -94,14 +87,11 @@ class Fingertip {
     if (look_up_ && touch.contact.ok()) {
       (*look_up_)(touch);
     }
-    if (six_axes_) {
+    if (wrench_) {
       if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact()) {
-        six_axes_->learn(dots, pressure_mpa);
+        wrench_->learn(dots, pressure_mpa);
       }
-      touch.six_axes = (*six_axes_)(dots, dots_->touching.view(), pressure_mpa);
-    }
-    if (force_) {
-      touch.wrench = force_->wrench(force_->map, side_dots_mm, pressure_mpa);
+      touch.wrench = (*wrench_)(dots, dots_->touching.view(), pressure_mpa);
     }
     if (dots_) {
       dots_->conclude(touch);
@@ -141,12 +131,6 @@ class Fingertip {
   StridedView<const Point2<double>> dot_slips() const {
     return dots_ ? dots_->stick.slips() : StridedView<const Point2<double>>();
   }
-  /// Pull of the membrane on the rim at column `k` of rim_mm in the last frame, N/mm; NaN where it
-  /// is not known.
-  Point3<double> rim_tension(Index k) const {
-    return force_ ? force_->wrench.rim_tension(k) : detail::missing_point<double>();
-  }
-
   /// Forgets the object: the next frame is treated as the first.
   void reset() {
     if (dots_) {
@@ -192,9 +176,6 @@ class Fingertip {
     if (find_flat_area_ && touch.contact.in_contact()) {
       touch.flat_area = (*find_flat_area_)(mask_.view(), depth_mm_.view());
     }
-    if (force_) {
-      (void)force_->heights(depth_mm_.view(), mask_.view(), force_->map);
-    }
   }
 
   FingertipStatus judge(FingertipResult& touch) const {
@@ -208,7 +189,7 @@ class Fingertip {
     touch.lacks_stick_ratio = dots_ && !is_finite(touch.stick.stick_ratio);
     touch.lacks_look_up =
         look_up_ && (look_up_->by_area || look_up_->by_depth) && !touch.normal.has_force();
-    touch.lacks_wrench = (force_ || six_axes_) && !touch.wrench.ok() && !touch.six_axes.ok();
+    touch.lacks_wrench = wrench_ && !touch.wrench.ok();
     const bool all = !touch.lacks_motion && !touch.lacks_stick_ratio && !touch.lacks_look_up &&
                      !touch.lacks_wrench;
     return sure && all ? FingertipStatus::ok : FingertipStatus::partial;
@@ -226,8 +207,7 @@ class Fingertip {
   std::optional<EquivalentFlatArea<>> find_flat_area_;
   std::optional<detail::FingertipDots> dots_;
   std::optional<detail::FingertipLookUp> look_up_;
-  std::optional<detail::FingertipSixAxes> six_axes_;
-  std::optional<detail::FingertipForce> force_;
+  std::optional<detail::FingertipWrench> wrench_;
 };
 
 }  // namespace v0

@@ -14,8 +14,6 @@
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/force/look_up.hpp"
-#include "fingerpad/force/membrane_wrench.hpp"
-#include "fingerpad/force/pad_heights.hpp"
 #include "fingerpad/force/wrench.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
@@ -61,13 +59,8 @@ struct FingertipOptions {
 
   /// Six axes from the printed dots near the rim; the base radius, rubber and its modulus must be
   /// known; empty: not used. Needs the pressure, and begins with a frame that touches nothing.
-  std::optional<MembraneWrenchOptions> six_axes = {};
+  std::optional<WrenchOptions> wrench = {};
   double dot_sd_px = 0.06;  ///< of a dot's place in the picture, > 0
-
-  /// Six axes from shape and side dots: positions at which these are fixed; one row; empty: none.
-  StridedView<const Point3<double>> rim_mm = {};
-  /// With modulus_n_per_mm, frames whose pressure is NaN are answered too.
-  WrenchOptions<double> wrench = {};
 };
 
 /// The worst of a frame; the flags of FingertipResult tell of which stages.
@@ -108,9 +101,8 @@ struct [[nodiscard]] FingertipResult {
   /// From the area if that is known, because the curve by depth holds for one shape only; else by
   /// depth.
   ForceResult<double> normal;
-  ShearResult<double> shear;      ///< from the curve
-  MembraneWrenchResult six_axes;  ///< from printed dots
-  WrenchResult<double> wrench;    ///< six axes from shape and side dots
+  ShearResult<double> shear;  ///< from the curve
+  WrenchResult wrench;        ///< six axes from the printed dots near the rim
 
   bool ok() const { return status == FingertipStatus::ok; }
 };

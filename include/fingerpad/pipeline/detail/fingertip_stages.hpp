@@ -85,10 +85,6 @@ struct FingertipDots {
 
   /// The load from a six-axis force, else from the look-up; unknown without both.
   ContactLoad<double> load_of(const FingertipResult& touch) const {
-    if (touch.six_axes.ok()) {
-      return contact_load(touch.six_axes.force_n, touch.six_axes.moment_n_mm, at_mm.view(),
-                          touching.view());
-    }
     if (touch.wrench.ok()) {
       return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
                           touching.view());
@@ -136,21 +132,21 @@ struct FingertipLookUp {
 /// Six axes from the printed dots near the rim. Where they lie on the membrane is learnt from the
 /// first frames that touch nothing, and then kept, so that a slow touch is never taken for a free
 /// pad.
-struct FingertipSixAxes {
+struct FingertipWrench {
   struct Place {
     double arc_mm = 0, azimuth_rad = 0;
     int frames = 0;
   };
   static constexpr int free_frames = 16;
 
-  MembraneWrench<> wrench;
+  Wrench<> wrench;
   OwnedGrid<Place> places;
   std::vector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
 
-  FingertipSixAxes(const Camera<double>& camera, const FingertipOptions& o)
-      : wrench(camera, *o.six_axes),
+  FingertipWrench(const Camera<double>& camera, const FingertipOptions& o)
+      : wrench(camera, *o.wrench),
         places(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         dot_sd_px(o.dot_sd_px) {
     require("FingertipOptions", {{"dot_sd_px", o.dot_sd_px, positive}});
@@ -177,9 +173,9 @@ struct FingertipSixAxes {
 
   /// Of the dots that nothing touches.
   template <class Dots>
-  MembraneWrenchResult operator()(const Dots& dots_px,
-                                  const StridedView<const std::uint8_t>& touching,
-                                  double pressure_mpa) {
+  WrenchResult operator()(const Dots& dots_px,
+                          const StridedView<const std::uint8_t>& touching,
+                          double pressure_mpa) {
     marks.clear();
     const std::uint8_t* touched = touching.data();
     for_each(dots_px, [&](const Place& place, const Point2<double>& px) {
@@ -204,20 +200,6 @@ struct FingertipSixAxes {
       }
     }
   }
-};
-
-/// The six-axis force from shape and side dots.
-struct FingertipForce {
-  PadHeights<> heights;
-  HeightMap<double> map;
-  Wrench<> wrench;
-
-  FingertipForce(const Camera<double>& camera,
-                 const SampledPad<float>& pad,
-                 const FingertipOptions& o)
-      : heights(pad.samples.rows, pad.samples.cols, camera, o.wrench.base_radius_mm + 1),
-        map(heights.map()),
-        wrench(o.rim_mm, o.wrench) {}
 };
 
 /// The test of the contact in samples. Refuses a free apex more than 5 % off the highest point of
