@@ -34,14 +34,17 @@ struct DotPlate {
 Outcome camera(const Path& recording, const DotPlate& plate);
 
 /// The shape of the free pad. Writes to the recording reference.png, the mean of free/, unless it
-/// exists, and its depth as a spherical cap. With `ball_radius_mm` the cap is fitted to
-/// touches.csv: x_mm,y_mm,z_mm of the lowest point of a ball that just touches the pad.
-struct CapSize {
-  double base_radius_mm = 0;
-  double apex_height_mm = 0;
+/// exists, and its depth. With `ball_radius_mm` the shape is that of an inflated rubber
+/// (membrane/free_pad.hpp), or a cap with three even terms, fitted to touches.csv: x_mm,y_mm,z_mm
+/// of the lowest point of a ball that just touches the pad. Else it is a spherical cap.
+struct PadSize {
+  double base_radius_mm = 0;  ///< 0: found
+  double apex_height_mm = 0;  ///< of the spherical cap
   double ball_radius_mm = 0;
+  double stress_free_height_mm = 0;  ///< of the rubber's apex before it is inflated; 0: found
+  bool no_rubber = false;
 };
-Outcome shape(const Path& recording, const Path& sensor, const CapSize& size);
+Outcome shape(const Path& recording, const Path& sensor, const PadSize& size);
 
 /// The fluid, from the free pad and from frames/ of known depth (presses.csv or true_depth/).
 Outcome absorption(const Path& recording, const Path& sensor);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Calibrates the camera and the shape of the free pad.
+// Calibrates the camera.
 #include "calibrate/geometry.hpp"
 
 #include <Eigen/Core>
@@ -16,9 +16,6 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/dots/dot_finder.hpp"
 #include "replay/io/failure.hpp"
-#include "replay/io/images.hpp"
-#include "replay/io/number_table.hpp"
-#include "replay/io/recording.hpp"
 
 namespace calibrate {
 namespace {
@@ -47,25 +44,6 @@ std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
   return dots;
 }
 
-TouchedCap touched_cap(const Path& file, double ball_radius_mm) {
-  const replay::NumberTable table(file, {"x_mm", "y_mm", "z_mm"});
-  std::vector<fingerpad::Point3<double>> touches;
-  for (const auto& line : table.lines()) {
-    touches.push_back({line.values[0], line.values[1], line.values[2]});
-  }
-  if (touches.size() < 5) {
-    replay::fail(file, "has " + std::to_string(touches.size()) +
-                           " touches; the fit of four parameters needs at least 5");
-  }
-  const TouchedCap fit = fit_cap(touches, ball_radius_mm);
-  if (std::isnan(fit.size.base_radius_mm)) {
-    replay::fail(file,
-                 "the touches are not on a cap above the plate; give them in mm above the inner "
-                 "face of the plate, and check the radius of the ball");
-  }
-  return fit;
-}
-
 /// Least squares of N parameters by normal equations, which are well conditioned here: all lengths
 /// are in mm about the middle of a pad. (A decomposition of all rows takes ten seconds to compile.)
 template <int N>
@@ -84,27 +62,6 @@ class LeastSquares {
   Eigen::Matrix<double, N, N> normal_ = Eigen::Matrix<double, N, N>::Zero();
   Vector right_ = Vector::Zero();
 };
-
-/// The mean of all pictures of a folder as they are stored, 16 bit, 256 units per grey level.
-cv::Mat mean_picture(const Path& folder) {
-  replay::FrameSource source = replay::FrameSource::of_folder(folder);
-  cv::Mat sum, mean;
-  for (int k = 0; k < source.size(); ++k) {
-    const cv::Mat picture = source.next_stored();
-    if (!sum.empty() && (picture.size() != sum.size() || picture.channels() != sum.channels())) {
-      replay::fail(source.last_file(), "has another size than the pictures before it");
-    }
-    cv::Mat scaled;
-    picture.convertTo(scaled, CV_64F, picture.depth() == CV_16U ? 1 : 256);
-    sum = sum.empty() ? scaled : cv::Mat(sum + scaled);
-  }
-  sum.convertTo(mean, CV_16U, 1.0 / source.size());
-  return mean;
-}
-
-}  // namespace
-
-namespace {
 
 /// What the pictures of a target determine, in this order.
 enum { px_per_mm, aspect, distance, center_x, center_y, k1, turn, turn_high, shift_x, shift_y };
@@ -250,58 +207,6 @@ CameraFit fit_camera(const std::vector<PlateDot>& low,
   return found;
 }
 
-TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm,
-                   double ball_radius_mm) {
-  std::vector<Eigen::Vector3d> centers;  // of the ball
-  for (const auto& touch : touches_mm) {
-    centers.emplace_back(touch.x, touch.y, touch.z + ball_radius_mm);
-  }
-  // |p - c|^2 = (R + r)^2 is linear in c and in (R + r)^2 - |c|^2. This gives the start for the
-  // least squares of distances.
-  LeastSquares<4> start;
-  for (const Eigen::Vector3d& at : centers) {
-    start.add({2 * at(0), 2 * at(1), 2 * at(2), 1}, at.squaredNorm());
-  }
-  const Eigen::Vector4d linear = start.solution();
-  Eigen::Vector4d p;
-  p << linear.head<3>(), std::sqrt(linear(3) + linear.head<3>().squaredNorm());
-  LeastSquares<4> step;
-  double left_sq = 0;
-  for (int k = 0; k < 20; ++k) {
-    step = {};
-    left_sq = 0;
-    for (const Eigen::Vector3d& at : centers) {
-      const Eigen::Vector3d from = at - p.head<3>();
-      const double distance = from.norm();
-      const double left = distance - p(3);
-      step.add({-from(0) / distance, -from(1) / distance, -from(2) / distance, -1}, left);
-      left_sq += left * left;
-    }
-    p -= step.solution();
-  }
-  const double radius = p(3) - ball_radius_mm;
-  const double base_sq = radius * radius - p(2) * p(2);
-  TouchedCap fit;
-  fit.size = {base_sq > 0 && radius + p(2) > 0 ? std::sqrt(base_sq)
-                                               : std::numeric_limits<double>::quiet_NaN(),
-              radius + p(2), ball_radius_mm};
-  fit.off_axis_mm = p.head<2>().norm();
-  const double freedom = (std::max)(1.0, static_cast<double>(centers.size()) - 4);
-  fit.residual_mm = std::sqrt(left_sq / freedom);
-  const Eigen::Matrix4d covariance = step.inverse() * fit.residual_mm * fit.residual_mm;
-  const Eigen::Vector4d by_apex(0, 0, 1, 1);
-  const Eigen::Vector4d by_base(0, 0, -p(2) / fit.size.base_radius_mm,
-                                radius / fit.size.base_radius_mm);
-  fit.apex_sd_mm = std::sqrt(by_apex.dot(covariance * by_apex));
-  fit.base_sd_mm = std::sqrt(by_base.dot(covariance * by_base));
-  fit.off_axis_sd_mm = std::sqrt(covariance(0, 0) + covariance(1, 1));
-  for (const Eigen::Vector3d& at : centers) {
-    fit.plot.points.push_back(
-        {at.head<2>().norm(), (at - p.head<3>()).norm() - ball_radius_mm, radius});
-  }
-  return fit;
-}
-
 Outcome camera(const Path& recording, const DotPlate& plate) {
   if (plate.rows < 3 || plate.cols < 3 || plate.rows % 2 == 0 || plate.cols % 2 == 0) {
     replay::fail(recording, "the numbers of rows and columns of the target must be odd and >= 3");
@@ -356,52 +261,6 @@ Outcome camera(const Path& recording, const DotPlate& plate) {
                "target is bent, or the lens distorts in another way");
   outcome.reports = {report};
   outcome.plots = {fit.plot};
-  return outcome;
-}
-
-Outcome shape(const Path& recording, const Path& sensor_file, const CapSize& given) {
-  const replay::Sensor sensor = known_sensor(sensor_file, {"camera"});
-  Report report{.what = "shape", .residual_unit = "mm (touches)"};
-  Outcome outcome;
-  CapSize size = given;
-  if (given.ball_radius_mm > 0) {
-    const TouchedCap fit = touched_cap(recording / "touches.csv", given.ball_radius_mm);
-    size = fit.size;
-    report.residual = fit.residual_mm;
-    report.parameters = {{"base_radius_mm", size.base_radius_mm, fit.base_sd_mm},
-                         {"apex_height_mm", size.apex_height_mm, fit.apex_sd_mm},
-                         {"off_axis_mm", fit.off_axis_mm, fit.off_axis_sd_mm}};
-    report.doubt(fit.residual_mm > 0.2,
-                 "the touches deviate from a sphere by more than 0.2 mm: give a depth map "
-                 "(reference_depth.tiff) instead");
-    report.doubt(fit.base_sd_mm > 0.2,
-                 "the base radius is uncertain by more than 0.2 mm: touch nearer to the rim");
-    report.doubt(fit.off_axis_mm > 0.3 + 2 * fit.off_axis_sd_mm,
-                 "the center of the cap is more than 0.3 mm off the axis: the zero of the stage, "
-                 "or the pad, is not at the middle dot of the target");
-    outcome.plots = {fit.plot};
-  } else {
-    report.parameters = {{"base_radius_mm", size.base_radius_mm},
-                         {"apex_height_mm", size.apex_height_mm}};
-    report.residual = std::numeric_limits<double>::quiet_NaN();
-    report.doubt(true, "nothing was measured: the shape is a cap of the given size");
-    outcome.plots = {Plot{"", "", {}}};
-  }
-  if (!(size.base_radius_mm > 0) || !(size.apex_height_mm > 0)) {
-    replay::fail(recording, "the base radius and the apex height must be > 0");
-  }
-  const Path picture = recording / "reference.png";
-  if (!std::filesystem::exists(picture)) {
-    replay::write_png(picture, mean_picture(recording / "free"));
-  }
-  replay::write_depth_image(
-      recording / "reference_depth.tiff",
-      spherical_cap_depth(sensor.camera, replay::read_stored_image(picture).size(),
-                          size.base_radius_mm, size.apex_height_mm));
-  outcome.sections["pad"] = {{"base_radius_mm", size.base_radius_mm},
-                             {"apex_height_mm", size.apex_height_mm}};
-  outcome.sections["reference"] = {{"frame", "reference.png"}, {"depth", "reference_depth.tiff"}};
-  outcome.reports = {report};
   return outcome;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The fits of the camera to a plate of dots, and of a cap to touches of a ball.
+// The fit of the camera to a plate of dots.
 #include <vector>
 
 #include "calibrate/calibrations.hpp"
@@ -32,14 +32,5 @@ CameraFit fit_camera(const std::vector<PlateDot>& low,
                      const std::vector<PlateDot>& high,
                      double raised_mm,
                      double plate_distance_mm);
-
-/// A cap fitted to touches. The base is NaN if the touches lie on no cap over the plate.
-struct TouchedCap {
-  CapSize size;
-  double base_sd_mm = 0, apex_sd_mm = 0, off_axis_mm = 0, off_axis_sd_mm = 0, residual_mm = 0;
-  Plot plot{"distance from the axis [mm]", "distance from the center of the cap [mm]", {}};
-};
-/// `touches_mm`: five or more lowest points of the ball.
-TouchedCap fit_cap(const std::vector<fingerpad::Point3<double>>& touches_mm, double ball_radius_mm);
 
 }  // namespace calibrate

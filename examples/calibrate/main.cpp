@@ -61,7 +61,7 @@ int run(const Common& common, const std::function<Outcome()>& work) {
 /// Arguments of the sub-commands.
 struct Arguments {
   calibrate::DotPlate plate;
-  calibrate::CapSize size;
+  calibrate::PadSize size;
   int max_radius_px = 50;
   calibrate::RimNoise rim;
   Path contacts, gauge, practice;
@@ -94,12 +94,16 @@ void add_geometry(CLI::App& app, Common& common, Arguments& given, std::function
 
   sub = add(
       app, common, "shape",
-      "depth of the free pad, a cap of given size or fitted to touches of a ball",
+      "depth of the free pad, fitted to touches of a ball, or a cap of given size",
       [&] { return calibrate::shape(common.recording, common.sensor(), given.size); }, work);
   sub->add_option("--base-radius-mm", given.size.base_radius_mm, "radius of the pad on the plate");
   sub->add_option("--apex-mm", given.size.apex_height_mm, "height of the free pad");
   sub->add_option("--ball-radius-mm", given.size.ball_radius_mm,
                   "radius of the ball of touches.csv");
+  sub->add_option("--stress-free-height-mm", given.size.stress_free_height_mm,
+                  "height of the rubber's apex before it is inflated, if known");
+  sub->add_flag("--no-rubber", given.size.no_rubber,
+                "the pad is no inflated rubber: a cap with three terms, touched beyond the rim");
 }
 
 void add_light(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "calibrate/calibrations.hpp"
-#include "calibrate/recordings.hpp"
+#include "calibrate/shape.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 #include "replay/io/failure.hpp"
@@ -21,7 +21,7 @@ namespace calibrate {
 namespace {
 
 constexpr int size_px = 240;
-constexpr double base_mm = 18, apex_mm = 12;
+constexpr double base_mm = 18;
 constexpr double ball_mm = 15;
 const fingerpad::Camera<double> practice_camera{50, 1.33, 120.3, 118.8, 0.153};
 const fingerpad::Absorption<double> practice_fluid{0.031, 0.0365, 0.98, 17};
@@ -148,17 +148,21 @@ void write_plates(const Path& folder, Noise& noise) {
 
 /// Writes the free pad, balls that just touch it, and balls pressed into it.
 void write_pad(const Path& folder, Noise& noise) {
-  const DepthMap free_mm =
-      spherical_cap_depth(practice_camera, {size_px, size_px}, base_mm, apex_mm);
+  const Meridian pad = fingerpad::FreePad<double>({base_mm, 10, 0.1}).meridian(0.03);
+  const DepthMap free_mm = depth_of_shape(practice_camera, {size_px, size_px}, pad);
   for (int k = 0; k < 16; ++k) {
     replay::write_png(picture_file(folder / "free", k), exposed(rendered(free_mm), noise));
   }
-  const Sphere pad = cap(base_mm, apex_mm);
   std::string touches = "x_mm,y_mm,z_mm\n";
   for (int k = 0; k < 25; ++k) {
     const double x = 6 * (k % 5 - 2), y = 6 * (k / 5 - 2);
-    const double reach = pad.radius_mm + ball_mm + 0.01 * noise();
-    const double z = pad.center_mm.z + std::sqrt(reach * reach - x * x - y * y) - ball_mm;
+    double center = 0;  // of the ball that touches the pad
+    for (const auto& p : pad) {
+      const double beside = std::hypot(x, y) - p.x;
+      center =
+          std::fmax(center, p.y + std::sqrt(std::fmax(0, ball_mm * ball_mm - beside * beside)));
+    }
+    const double z = center - ball_mm + 0.01 * noise();
     touches += line("%.3f,%.3f,%.3f\n", x, y, z);
   }
   write_text(folder / "touches.csv", touches);
@@ -172,8 +176,7 @@ void write_pad(const Path& folder, Noise& noise) {
     DepthMap depth = free_mm.clone();
     for (int i = 0; i < size_px; ++i) {
       for (int j = 0; j < size_px; ++j) {
-        const double on_ball =
-            depth_on(practice_camera, i, j, {{x, y, z + ball_mm}, ball_mm}, false);
+        const double on_ball = depth_on(practice_camera, i, j, {{x, y, z + ball_mm}, ball_mm});
         if (on_ball < static_cast<double>(depth(i, j))) {
           depth(i, j) = static_cast<float>(on_ball);
         }

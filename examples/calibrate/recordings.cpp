@@ -33,7 +33,7 @@ DepthMap depth_on_ball(const replay::Sensor& sensor, const Sphere& ball, const D
   double deepest = 0;
   for (int i = 0; i < depth.rows; ++i) {
     for (int j = 0; j < depth.cols; ++j) {
-      const double on_ball = depth_on(sensor.camera, i, j, ball, false);
+      const double on_ball = depth_on(sensor.camera, i, j, ball);
       depth(i, j) = static_cast<float>(on_ball);
       deepest = std::fmax(deepest, static_cast<double>(free_mm(i, j)) - on_ball);
     }
@@ -91,38 +91,15 @@ std::vector<cv::Mat> read_pictures(const fs::path& folder, const replay::Picture
   return pictures;
 }
 
-Sphere cap(double base_radius_mm, double apex_height_mm) {
-  const double a = base_radius_mm, h = apex_height_mm;
-  const double radius = (a * a + h * h) / (2 * h);
-  return {{0, 0, h - radius}, radius};
-}
-
-double depth_on(
-    const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere, bool far) {
+double depth_on(const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere) {
   const auto start = point_at(camera, double(row), double(col), 0.0) - sphere.center_mm;
   const auto end = point_at(camera, double(row), double(col), 1.0) - sphere.center_mm;
   const auto along = end - start;  // rays are straight in the fluid
   const double a = squared_norm(along), b = dot(start, along);
   const double c = squared_norm(start) - sphere.radius_mm * sphere.radius_mm;
   const double root = std::sqrt(b * b - a * c);
-  const double depth = far ? (-b + root) / a : c / (-b + root);
+  const double depth = c / (-b + root);
   return depth >= 0 ? depth : none;
-}
-
-DepthMap spherical_cap_depth(const fingerpad::Camera<double>& camera,
-                             cv::Size size,
-                             double base_radius_mm,
-                             double apex_height_mm) {
-  const Sphere sphere = cap(base_radius_mm, apex_height_mm);
-  DepthMap depth(size);
-  for (int i = 0; i < size.height; ++i) {
-    for (int j = 0; j < size.width; ++j) {
-      const auto at_plate = point_at(camera, double(i), double(j), 0.0);
-      const bool inside = std::hypot(at_plate.x, at_plate.y) < base_radius_mm;
-      depth(i, j) = static_cast<float>(inside ? depth_on(camera, i, j, sphere, true) : none);
-    }
-  }
-  return depth;
 }
 
 std::vector<DepthMap> true_depths(const fs::path& recording,

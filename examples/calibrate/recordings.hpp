@@ -32,19 +32,10 @@ struct Sphere {
   fingerpad::Point3<double> center_mm;
   double radius_mm = 0;
 };
-/// The sphere of which a cap on the plate is a part.
-Sphere cap(double base_radius_mm, double apex_height_mm);
 
-/// Depth at which the ray of a pixel leaves the sphere (`far`) or enters it; NaN if it does not
-/// above the plate.
-double depth_on(
-    const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere, bool far);
-
-/// Depth of a free pad that is a spherical cap; NaN outside its base.
-DepthMap spherical_cap_depth(const fingerpad::Camera<double>& camera,
-                             cv::Size size,
-                             double base_radius_mm,
-                             double apex_height_mm);
+/// Depth at which the ray of a pixel enters the sphere; NaN if it does not above the
+/// plate.
+double depth_on(const fingerpad::Camera<double>& camera, int row, int col, const Sphere& sphere);
 
 /// The known depths of frames/: from true_depth/ (a map for each frame), or from presses.csv (the
 /// lowest point of a ball) for pixels that certainly lie on the ball. NaN where unknown.

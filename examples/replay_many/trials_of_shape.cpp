@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibrate/geometry.hpp"
+#include "calibrate/shape.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "trial_parts.hpp"
@@ -64,12 +65,10 @@ Trial cap() {
     return touches;
   };
   const auto fit = [](const Touches& touches) {
-    const auto found = calibrate::fit_cap(touches, ball_mm);
-    return Estimate{{found.size.base_radius_mm, found.size.apex_height_mm},
-                    diagonal({found.base_sd_mm, found.apex_sd_mm})};
+    const auto found = calibrate::fit_shape(touches, {ball_mm, base_mm, 0, false});
+    return Estimate{{found.apex_height_mm}, diagonal({found.apex_sd_mm})};
   };
-  return trial({"base_radius_mm", "apex_height_mm"}, {base_mm, apex_mm}, 0.1, measure, draw_samples,
-               fit);
+  return trial({"apex_height_mm"}, {apex_mm}, 0.1, measure, draw_samples, fit);
 }
 
 /// Eight presses of a ball into a gel seen in one channel, with one grey level of noise.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -23,18 +24,19 @@ struct Sensor {
   Camera<double> camera;
   Absorption<double> fluid;
   double brightness = 57;
-  std::vector<double> g = {0.0163};  // over (rho / 20 mm)^2
+  std::vector<double> g = {0.0163};  // of 1, and if there, of (x, y, x^2, x y, y^2) / 20 mm
+  double ramp = 0;                   // of kappa over x / 20 mm
 
-  double g_at(double rho_sq_mm2) const {
-    double sum = 0;
-    for (std::size_t k = g.size(); k-- > 0;) {
-      sum = sum * rho_sq_mm2 / 400 + g[k];
-    }
-    return sum;
+  double g_at(const Point2<double>& at) const {
+    const double x = at.x / 20, y = at.y / 20;
+    const double m[] = {1, x, y, x * x, x * y, y * y};
+    return std::inner_product(g.begin(), g.end(), m, 0.0);
   }
   DepthSample<double> sample(double row, double col, double depth_mm) const {
     auto s = depth_sample(camera, row, col, depth_mm, Colour<double>{});
-    s.colour = colour_at_depth(fluid, s.pencil, brightness, g_at(s.rho_sq_mm2), depth_mm);
+    Absorption<double> here = fluid;
+    here.kappa *= 1 + ramp * s.plate_mm.x / 20;
+    s.colour = colour_at_depth(here, s.pencil, brightness, g_at(s.plate_mm), depth_mm);
     return s;
   }
 };
@@ -75,7 +77,7 @@ double depth_of(const Fit& fit, const DepthSample<double>& s) {
   double low = -1, high = 20;
   for (int k = 0; k < 60; ++k) {
     const double l = (low + high) / 2;
-    const double g = fit.scattering.at(s.rho_sq_mm2);
+    const double g = fit.light.scattering.at(s.plate_mm);
     (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).first > 0 ? high : low) = l;
   }
   return low;
@@ -117,7 +119,7 @@ TEST_CASE("calibration of depth: noise-free colours give the fluid back") {
     RC_ASSERT(fit.ok());
     RC_ASSERT(test::relative_error(fit.fluid.c_red_per_mm, sensor.fluid.c_red_per_mm) < roundoff);
     RC_ASSERT(test::relative_error(fit.fluid.kappa, sensor.fluid.kappa) < roundoff);
-    RC_ASSERT(test::relative_error(fit.scattering.coefficient[0], sensor.g[0]) < roundoff);
+    RC_ASSERT(test::relative_error(fit.light.scattering.coefficient[0], sensor.g[0]) < roundoff);
     RC_ASSERT(std::abs(fit.fluid.c_green_per_mm - sensor.fluid.c_green_per_mm) <
               roundoff * sensor.fluid.c_green_per_mm);
     RC_ASSERT(fit.residual_rms < 1e-12 * sensor.brightness);
@@ -136,21 +138,27 @@ TEST_CASE("calibration of depth: four samples are enough near the published flui
   });
 }
 
-TEST_CASE("calibration of depth: g that varies over the radius") {
+TEST_CASE("calibration of depth: light that varies over the plate") {
   Sensor sensor;
-  sensor.g = {0.0163, -0.004, 0.001};
+  sensor.g = {0.0163, 0.002, -0.001, -0.004, 0.001, 0.0005};
+  sensor.ramp = 0.03;
   Samples samples;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 5; ++j) {
-      samples.push_back(sensor.sample(239.5, 319.5 + 50 * j, 0.5 + 2.3 * i));
-    }
+  for (int k = 0; k < 175; ++k) {  // three of the depths at each place
+    samples.push_back(
+        sensor.sample(90 + 12 * (k / 7 % 25), 170 + 50 * (k % 7), 0.5 + 2.3 * (k % 6)));
   }
   const auto fit = fit_absorption<2, double>(samples);
   CHECK(fit.ok());
   CHECK(fit.fluid.c_red_per_mm == Approx(0.029).epsilon(1e-8));
   for (const auto& s : samples) {
-    CHECK(fit.scattering.at(s.rho_sq_mm2) == Approx(sensor.g_at(s.rho_sq_mm2)).epsilon(1e-8));
+    CHECK(fit.light.scattering.at(s.plate_mm) == Approx(sensor.g_at(s.plate_mm)).epsilon(1e-8));
+    CHECK(fit.light.kappa.at(s.plate_mm) ==
+          Approx(sensor.fluid.kappa * (1 + 0.03 * s.plate_mm.x / 20)).epsilon(1e-8));
+    CHECK(std::abs(fit.error_mm(s)) < 1e-8);
   }
+  auto misplaced = samples[3];
+  misplaced.depth_mm += 0.01;
+  CHECK(fit.error_mm(misplaced) == Approx(-0.01).epsilon(0.01));
 }
 
 TEST_CASE("calibration of depth: brighter light and longer numbers change only what they must") {
@@ -167,7 +175,7 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
   CHECK(twice.fluid.c_red_per_mm == fit.fluid.c_red_per_mm);
   CHECK(twice.fluid.c_green_per_mm == fit.fluid.c_green_per_mm);
   CHECK(twice.fluid.kappa == fit.fluid.kappa);
-  CHECK(twice.scattering.coefficient[0] == 2 * fit.scattering.coefficient[0]);
+  CHECK(twice.light.scattering.coefficient[0] == 2 * fit.light.scattering.coefficient[0]);
   CHECK(twice.covariance[0][0] == fit.covariance[0][0]);
   CHECK(twice.residual_rms == 2 * fit.residual_rms);
 
@@ -176,7 +184,7 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
     using L = long double;
     wide.push_back({{L(s.pencil.path_factor),
                      {L(s.pencil.height.meridional_mm), L(s.pencil.height.sagittal_mm)}},
-                    L(s.rho_sq_mm2),
+                    {L(s.plate_mm.x), L(s.plate_mm.y)},
                     L(s.depth_mm),
                     {L(s.colour.red), L(s.colour.green)},
                     L(s.weight)});
@@ -194,7 +202,7 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
   REQUIRE_FALSE(fit.delta_at_limit);
   const std::array<double, 4> best = {fit.fluid.c_red_per_mm,
                                       fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm,
-                                      fit.fluid.kappa, fit.scattering.coefficient[0]};
+                                      fit.fluid.kappa, fit.light.scattering.coefficient[0]};
   const auto cost = [&](const std::array<double, 4>& p) {
     double sum = 0;
     for (const auto& s : samples) {
@@ -265,7 +273,8 @@ TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise 
     Samples samples = exact;
     add_noise(samples, noise, random);
     const auto fit = fit_absorption<0, double>(samples, noise);
-    Eigen::Vector4d off(fit.fluid.c_red_per_mm, 0, fit.fluid.kappa, fit.scattering.coefficient[0]);
+    Eigen::Vector4d off(fit.fluid.c_red_per_mm, 0, fit.fluid.kappa,
+                        fit.light.scattering.coefficient[0]);
     off(1) = fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm;
     off -= Eigen::Vector4d(0.029, 0.0046, sensor.fluid.kappa, 0.0163);
     scatter += off * off.transpose() / trials;
@@ -335,27 +344,28 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
     std::swap(s.colour.red, s.colour.green);
   }
   CHECK(fit(swapped) != "accepted");
-  const auto at_one_radius = at({0.5, 2, 4, 6, 8, 10});
+  const auto at_one_place = at({0.5, 2, 3, 4, 5, 6, 8, 10});
   CHECK(refusal([&] {
-          (void)fit_absorption<1, double>(at_one_radius);
-        }).find("rho_sq_mm2 = 1, must") != std::string::npos);
+          (void)fit_absorption<1, double>(at_one_place);
+        }).find("differ at every place") != std::string::npos);
   const auto unknown = fit_absorption<0, double>(at({0.5, 4, 8, 12}));
   CHECK(std::isnan(unknown.covariance[0][0]));  // no residual to estimate the noise from
 }
 
-TEST_CASE("calibration of depth: errors of g's coefficients count by the power of the radius") {
+TEST_CASE("calibration of depth: errors of g's coefficients count by the place") {
   const Sensor sensor;
   const auto at = sensor.sample(100, 150, 5);
   const auto sd_from = [&](std::size_t coefficient) {
     AbsorptionFit<double, 2> fit;
     fit.fluid = sensor.fluid;
-    fit.scattering.coefficient = {sensor.g[0], 0.001, 0.0005};
-    fit.scattering.rho_max_mm = 20;
-    fit.covariance[3 + coefficient][3 + coefficient] = 1e-8;
+    fit.light.kappa.coefficient[0] = sensor.fluid.kappa;
+    fit.light.scattering.coefficient = {sensor.g[0], 0.001, 0.0005, 0, 0.001, 0};
+    fit.light.scattering.scale_mm = fit.light.kappa.scale_mm = 20;
+    fit.covariance[5 + coefficient][5 + coefficient] = 1e-8;
     return predicted_depth_sd(fit, at);
   };
-  const double share = at.rho_sq_mm2 / 400;
-  REQUIRE((share > 0.01 && share != 1));
-  CHECK(sd_from(1) == Approx(share * sd_from(0)).epsilon(1e-12));
-  CHECK(sd_from(2) == Approx(share * share * sd_from(0)).epsilon(1e-12));
+  const double x = at.plate_mm.x / 20, y = at.plate_mm.y / 20;
+  REQUIRE((x < -0.1 && y < -0.1 && x != y));
+  CHECK(sd_from(1) == Approx(-x * sd_from(0)).epsilon(1e-12));
+  CHECK(sd_from(4) == Approx(x * y * sd_from(0)).epsilon(1e-12));
 }

@@ -119,7 +119,16 @@ TEST_CASE("free pad: the apex of finite elements", "[membrane]") {
     const auto rim = FreePad<double>(p.cap).rim(p.load_per_mm);
     REQUIRE(rim.has_value());
     CHECK(std::fabs(rim->apex_mm - p.apex_mm) < 0.005);
+    const auto meridian = FreePad<double>(p.cap).meridian(p.load_per_mm);
+    REQUIRE(meridian.size() > 100);
+    CHECK(std::fabs(meridian.front().y - rim->apex_mm) < 5e-4);  // 600 steps against 60
+    CHECK(meridian.front().x == 0);
+    CHECK(std::fabs(meridian.back().x - p.cap.base_radius_mm) < 5e-4);
+    CHECK(meridian.back().y == 0);
+    const auto along = meridian.back() - meridian[meridian.size() - 2];
+    CHECK(std::fabs(std::atan2(-along.y, along.x) - rim->slope_rad) < 0.01);
   }
+  CHECK(FreePad<double>({18.7, 11}).meridian(10.0).empty());
   CHECK_FALSE(FreePad<double>({18.7, 11}).rim(10.0).has_value());
 }
 

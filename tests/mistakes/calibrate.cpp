@@ -321,8 +321,11 @@ TEST_CASE("mistakes: the fluid", "[mistakes]") {
        }),
        "check whether red and green are exchanged"},
       {"g negative at the rim", absorption<1>([](Colours& samples) {
-         for (auto& s : samples) {
-           const double g = 0.0163 * (1 - 1.2 * s.rho_sq_mm2 / samples[4].rho_sq_mm2);
+         for (std::size_t k = 0; k < samples.size(); ++k) {
+           auto& s = samples[k];
+           s = depth_sample(Camera<double>{}, 239.5 + 10 * static_cast<double>(k % 3),
+                            319.5 + 10 * static_cast<double>(k % 5), s.depth_mm, s.colour);
+           const double g = 0.0163 * (1 - 0.4 * s.plate_mm.x);
            s.colour = colour_at_depth(Absorption<double>{}, s.pencil, 57.0, g, s.depth_mm);
          }
        }),

@@ -197,7 +197,8 @@ void check_fit(const Recording& recording, Findings& findings) {
     (void)fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption,
                                    fingerpad::channel<Pixel>(recording.reference, 2),
                                    fingerpad::channel<Pixel>(recording.reference, 1),
-                                   recording.reference_depth);
+                                   recording.reference_depth, fingerpad::grey_scale_of<Pixel>(),
+                                   recording.sensor.light ? &*recording.sensor.light : nullptr);
   };
   try {
     recording.reference.depth() == CV_16U ? fit(std::uint16_t()) : fit(std::uint8_t());

@@ -91,6 +91,21 @@ fingerpad::Absorption<double> read_absorption(const Section& root) {
   return absorption;
 }
 
+fingerpad::PadLight<double> read_light(const Section& root) {
+  const Section section = root.section(
+      "light", {{"scale_mm", "unit of x and y in the polynomials over the plate, mm"},
+                {"kappa", "coefficients of 1, x, y"},
+                {"scattering", "coefficients of 1; x, y; x^2, x y, y^2; ... to degree 6"}});
+  fingerpad::PadLight<double> light;
+  light.kappa.scale_mm = light.scattering.scale_mm = section.positive("scale_mm");
+  const auto copy = [](const auto& from, auto& to) {
+    std::copy(from.begin(), from.end(), to.coefficient.begin());
+  };
+  copy(section.numbers<decltype(light.kappa)::terms>("kappa"), light.kappa);
+  copy(section.numbers<decltype(light.scattering)::terms>("scattering"), light.scattering);
+  return light;
+}
+
 Pad read_pad(const Section& root) {
   const Section section =
       root.section("pad", {{"base_radius_mm", "radius of the pad on the plate, mm"},
@@ -148,8 +163,8 @@ fingerpad::StickOptions read_stick(const Section& root) {
 
 /// Whether the file has a key that only depth needs.
 bool names_depth(const Section& root) {
-  for (const char* key : {"camera", "absorption", "pad", "smoothing_px", "rim", "neighbour_light",
-                          "force", "contact"}) {
+  for (const char* key : {"camera", "absorption", "light", "pad", "smoothing_px", "rim",
+                          "neighbour_light", "force", "contact"}) {
     if (root.has(key)) {
       return true;
     }
@@ -288,6 +303,9 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
   } catch (const fingerpad::parameter_error& error) {
     fail(file, error.what());
   }
+  if (root.has("light")) {
+    sensor.light = read_light(root);
+  }
   sensor.pad = read_pad(root);
   const Section reference =
       root.section("reference", {{"frame", "picture of the free pad, a PNG file"},
@@ -341,6 +359,7 @@ Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& cont
                       {"calibration", "reports of the calibrations"},
                       {"camera", "position and resolution of the camera"},
                       {"absorption", "absorption of light in the fluid"},
+                      {"light", "the light over the plate"},
                       {"pad", "size of the free pad"},
                       {"reference", "a frame of the free pad and its known depth"},
                       {"video", "a video instead of the folder frames/"},

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "fingerpad/depth/absorption.hpp"
+#include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
@@ -69,6 +70,7 @@ struct Sensor {
   fingerpad::Camera<double> camera;
   PictureFormat pictures;
   fingerpad::Absorption<double> absorption;
+  std::optional<fingerpad::PadLight<double>> light;  ///< empty: fitted to the reference frame
   Pad pad;
   std::string reference_frame;  ///< paths as written, relative to the recording; may be empty
                                 ///< if dots-only

@@ -7,8 +7,8 @@
 // vision-based tactile sensor" (slides), parameter identification, which solves three equations for
 // three unknowns; printed error E005.
 //
-// For fixed c_red and delta = c_green - c_red the equation is linear in kappa and in the
-// coefficients of g, which a QR factorisation eliminates (variable projection). The
+// For fixed c_red and delta = c_green - c_red the equation is linear in the coefficients of kappa
+// and g over the plate, which a QR factorisation eliminates (variable projection). The
 // Levenberg-Marquardt method finds the other two, as (ln c_red, delta), so that c_red > 0, with
 // delta held at >= 0.
 //
@@ -27,9 +27,10 @@
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -40,17 +41,18 @@ inline namespace v0 {
 /// samples, too.
 template <scalar S = double>
 struct DepthSample {
-  Pencil<S> pencil;  ///< of the pixel
-  S rho_sq_mm2;      ///< squared distance of the pixel from the axis on the plate
-  S depth_mm;        ///< l along the ray, >= 0
-  Colour<S> colour;  ///< grey levels, > 0
-  S weight = S(1);   ///< 1 / (relative noise of the colour), > 0
+  Pencil<S> pencil;    ///< of the pixel
+  Point2<S> plate_mm;  ///< where its ray meets the plate, from the axis
+  S depth_mm;          ///< l along the ray, >= 0
+  Colour<S> colour;    ///< grey levels, > 0
+  S weight = S(1);     ///< 1 / (relative noise of the colour), > 0
 };
 
 template <scalar S>
 std::string check(const DepthSample<S>& s) {
   return check("DepthSample", {{"pencil.path_factor", s.pencil.path_factor, at_least(2)},
-                               {"rho_sq_mm2", s.rho_sq_mm2, not_negative},
+                               {"plate_mm.x", s.plate_mm.x, finite_number},
+                               {"plate_mm.y", s.plate_mm.y, finite_number},
                                {"depth_mm", s.depth_mm, not_negative},
                                {"colour.red", s.colour.red, positive},
                                {"colour.green", s.colour.green, positive},
@@ -65,18 +67,23 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
                             const S& depth_mm,
                             const Colour<S>& colour,
                             const S& weight = S(1)) {
-  const Ray<S> ray = ray_at_pixel(camera, row, col);
-  return {pencil_of(camera, ray), square(ray.plate_rho_mm), depth_mm, colour, weight};
+  const Point3<S> at = point_at(camera, row, col, S(0));
+  return {
+      pencil_of(camera, ray_at_pixel(camera, row, col)), {at.x, at.y}, depth_mm, colour, weight};
 }
 
-/// The fluid and its uncertainty. Parameters are in the order c_red, delta, kappa, g_0, ...
+/// The fluid, the light and their uncertainty. Parameters are in the order c_red, delta, and the
+/// coefficients of kappa and of g.
 template <scalar S = double, int Degree = 0>
 struct [[nodiscard]] AbsorptionFit {
-  static constexpr std::size_t parameters = 4 + Degree;
+  static constexpr std::size_t kappa_terms = decltype(PadLight<S, Degree>::kappa)::terms;
+  static constexpr std::size_t linear =
+      kappa_terms + decltype(PadLight<S, Degree>::scattering)::terms;
+  static constexpr std::size_t parameters = 2 + linear;
 
   const char* cause = cause::not_converged;  ///< likely mistake
-  Absorption<S> fluid = {};
-  RadialScattering<S, Degree> scattering = {};
+  Absorption<S> fluid = {};                  ///< with kappa on the axis
+  PadLight<S, Degree> light = {};
   /// NaN with as many samples as parameters and no given grey_noise.
   detail::SmallMatrix<S, parameters> covariance = detail::zero_matrix<S, parameters>();
   S condition =
@@ -87,6 +94,15 @@ struct [[nodiscard]] AbsorptionFit {
   bool delta_at_limit = false;  ///< the best delta would be < 0; it is held at 0
 
   bool ok() const { return cause == nullptr; }
+
+  /// The error of the depth that this sample's colours give, mm.
+  S error_mm(const DepthSample<S>& s) const {
+    Absorption<S> here = fluid;
+    here.kappa = light.kappa.at(s.plate_mm);
+    const auto [f, slope] =
+        depth_equation(here, s.pencil, light.scattering.at(s.plate_mm), s.colour, s.depth_mm);
+    return -f / slope;
+  }
 };
 
 namespace detail {
@@ -104,45 +120,59 @@ S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pen
   return depth_mm * (end - depth_mm * ((h_m + h_s) * m.first + S(2) * depth_mm * m.second));
 }
 
-/// c_red and delta, and the best kappa, g_0, g_1, ... for them.
-template <scalar S>
+/// c_red and delta, and the best coefficients of kappa and g for them.
+template <scalar S, int Degree>
 struct AbsorptionPoint {
+  using Fit = AbsorptionFit<S, Degree>;
   S c_red, delta;
-  std::vector<S> linear;
+  std::array<S, Fit::linear> linear = zeros<S, Fit::linear>();
   S cost = not_a_number<S>();  // sum of squared residuals, each over its noise
   Triangle<S> triangle = {};   // of the equations, each over its noise
 
-  /// Appends dF by kappa, g_0, g_1, ..., c_red and delta, and F without kappa and g, times
-  /// `weight`.
+  /// Appends dF by the linear coefficients, c_red and delta, and F without kappa and g, times
+  /// `weight`. `flat`: without absorption, with W = 1.
   void append(const DepthSample<S>& s,
-              const S& rho_sq_max,
+              const S& scale_mm,
               const S& weight,
-              std::vector<S>& rows) const {
+              std::vector<S>& rows,
+              bool flat = false) const {
     using std::exp;
+    using Light = PadLight<S, Degree>;
     const S path = s.pencil.path_factor * s.depth_mm;
-    const S light = scattered_light(s.depth_mm, c_red, s.pencil);
-    const S membrane = weight * s.colour.green * exp(delta * path);
-    S power = weight, g = S(0);
-    rows.push_back(-weight * s.colour.red);
-    for (std::size_t k = 1; k < linear.size(); ++k, power *= s.rho_sq_mm2 / rho_sq_max) {
-      rows.push_back(power * light);
-      g += power * linear[k];
+    const S w = flat ? S(1) : scattered_light(s.depth_mm, c_red, s.pencil);
+    const S membrane = weight * s.colour.green * (flat ? S(1) : S(exp(delta * path)));
+    const S x = s.plate_mm.x / scale_mm, y = s.plate_mm.y / scale_mm;
+    S g = S(0);
+    for (const S& m : decltype(Light::kappa)::monomials(x, y)) {
+      rows.push_back(-weight * s.colour.red * m);
     }
-    rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.pencil));
-    rows.push_back(membrane * path);
+    std::size_t k = Fit::kappa_terms;
+    for (const S& m : decltype(Light::scattering)::monomials(x, y)) {
+      rows.push_back(weight * m * w);
+      g += weight * m * linear[k++];
+    }
+    if (!flat) {
+      rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.pencil));
+      rows.push_back(membrane * path);
+    }
     rows.push_back(membrane);
   }
 
-  /// Whether kappa and g_0 are positive. There are unphysical minima where they are not.
-  bool is_physical() const { return is_finite(cost) && linear[0] > 0 && linear[1] > 0; }
+  /// Whether kappa and g on the axis are positive. There are unphysical minima where they are not.
+  bool is_physical() const {
+    return is_finite(cost) && linear[0] > 0 && linear[Fit::kappa_terms] > 0;
+  }
 };
 
 /// The equations, each over its noise.
-template <scalar S>
+template <scalar S, int Degree>
 class AbsorptionProblem {
  public:
-  AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& rho_sq_max)
-      : samples_(samples), rho_sq_max_(rho_sq_max) {
+  using Point = AbsorptionPoint<S, Degree>;
+  static constexpr std::size_t linear = Point::Fit::linear;
+
+  AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& scale_mm)
+      : samples_(samples), scale_mm_(scale_mm) {
     for (const DepthSample<S>& s : samples) {
       weights_.push_back(s.weight);
     }
@@ -150,7 +180,7 @@ class AbsorptionProblem {
 
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
   /// of a colour. It is constant to a few per cent over the depths of a pad.
-  void weigh(const AbsorptionPoint<S>& p) {
+  void weigh(const Point& p) {
     using std::exp;
     using std::sqrt;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -162,60 +192,56 @@ class AbsorptionProblem {
 
   /// The point at c_red and delta. The columns of these are projected on the complement of the
   /// linear ones; that this space rotates is ignored (Kaufman), and so is the change of g since
-  /// `linear`, which affects the steps but not the minimum.
-  AbsorptionPoint<S> project(const S& c_red, const S& delta, const std::vector<S>& linear) const {
-    AbsorptionPoint<S> p{c_red, delta, linear};
-    const std::size_t count = linear.size();
+  /// `last`, which affects the steps but not the minimum.
+  Point project(const S& c_red, const S& delta, const std::array<S, linear>& last) const {
+    Point p{c_red, delta, last};
     std::vector<S> rows;
+    rows.reserve(samples_.size() * (linear + 3));
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      p.append(samples_[i], rho_sq_max_, weights_[i], rows);
+      p.append(samples_[i], scale_mm_, weights_[i], rows);
     }
-    p.triangle = Triangle<S>(std::move(rows), count + 3);
-    p.linear = p.triangle.solve(count, count + 2);
-    for (S& x : p.linear) {
-      x = -x;
-    }
+    p.triangle = Triangle<S>(std::move(rows), linear + 3);
+    const std::vector<S> x = p.triangle.solve(linear, linear + 2);
     p.cost = S(0);
-    for (std::size_t k = count; k < count + 3; ++k) {
-      p.cost += square(p.triangle(k, count + 2));
+    for (std::size_t k = 0; k < linear; ++k) {
+      p.linear[k] = -x[k];
+    }
+    for (std::size_t k = linear; k < linear + 3; ++k) {
+      p.cost += square(p.triangle(k, linear + 2));
     }
     return p;
   }
 
   /// Share of the variance explained by depth. The comparison is a fit of kappa and g alone,
   /// without absorption and with W = 1; both variances are per degree of freedom.
-  S explained_by_depth(const AbsorptionPoint<S>& p) const {
-    const std::size_t count = p.linear.size();
+  S explained_by_depth(const Point& p) const {
     std::vector<S> rows;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      rows.push_back(-weights_[i] * samples_[i].colour.red);
-      S power = weights_[i];
-      for (std::size_t k = 1; k < count; ++k, power *= samples_[i].rho_sq_mm2 / rho_sq_max_) {
-        rows.push_back(power);
-      }
-      rows.push_back(weights_[i] * samples_[i].colour.green);
+      p.append(samples_[i], scale_mm_, weights_[i], rows, true);
     }
-    const S without_sq = square(Triangle<S>(std::move(rows), count + 1)(count, count));
-    const double left = static_cast<double>(samples_.size()) - static_cast<double>(count + 2);
+    const S without_sq = square(Triangle<S>(std::move(rows), linear + 1)(linear, linear));
+    const double left = static_cast<double>(samples_.size()) - static_cast<double>(linear + 2);
     return left > 0 ? S(1) - p.cost / S(left) / (without_sq / S(left + 2)) : not_a_number<S>();
   }
 
  private:
   std::span<const DepthSample<S>> samples_;
-  S rho_sq_max_;
+  S scale_mm_;
   std::vector<S> weights_;  // of each equation
 };
 
 /// Levenberg-Marquardt descent from p; true if it converged to roundoff.
-template <scalar S>
-bool descend(const AbsorptionProblem<S>& problem, AbsorptionPoint<S>& p, int max_iterations) {
+template <scalar S, int Degree>
+bool descend(const AbsorptionProblem<S, Degree>& problem,
+             AbsorptionPoint<S, Degree>& p,
+             int max_iterations) {
   using std::exp;
   const S tiny = S(4) * epsilon<S>();
   S damping = S(1) / S(1000);
   p = problem.project(p.c_red, p.delta, p.linear);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     // the columns of ln c_red, delta and F, in the triangle that is left of them
-    const std::size_t n = p.linear.size();
+    constexpr std::size_t n = AbsorptionProblem<S, Degree>::linear;
     const S c = p.c_red * p.triangle(n, n), along = p.triangle(n, n + 1);
     const S across = p.triangle(n + 1, n + 1), f = p.triangle(n, n + 2);
     const S down_c = -c * f, down_delta = -along * f - across * p.triangle(n + 1, n + 2);
@@ -253,15 +279,15 @@ bool descend(const AbsorptionProblem<S>& problem, AbsorptionPoint<S>& p, int max
 /// to roundoff (four samples can have two exact solutions), that of the smallest delta is taken.
 /// Needs no initial guess. The cost is NaN if no fluid is physical.
 template <scalar S>
-AbsorptionPoint<S> search_absorption(const AbsorptionProblem<S>& problem,
-                                     std::size_t linear,
-                                     int max_iterations) {
+AbsorptionPoint<S, 0> search_absorption(const AbsorptionProblem<S, 0>& problem,
+                                        int max_iterations) {
   using std::exp;
-  const AbsorptionPoint<S> none = {S(0), S(0), std::vector<S>(linear, S(0))};
-  AbsorptionPoint<S> best = none;
+  constexpr std::size_t linear = AbsorptionProblem<S, 0>::linear;
+  const AbsorptionPoint<S, 0> none = {S(0), S(0)};
+  AbsorptionPoint<S, 0> best = none;
   for (int j = 0; j <= 8; ++j) {
     const S delta = S(j * j) / S(1000);  // 0 to 0.064 per mm
-    AbsorptionPoint<S> start = none;
+    AbsorptionPoint<S, 0> start = none;
     for (int i = 0; i <= 24; ++i) {
       const S c_red = exp(S(i) / S(4)) / S(1000);  // 0.001 to 0.4 per mm
       const auto p = problem.project(c_red, delta, none.linear);
@@ -297,49 +323,55 @@ long long distinct_values(std::vector<S> values) {
 /// Refuses samples that do not determine a fluid, and names what is missing. Returns the largest
 /// rho^2.
 template <scalar S>
-S expects_determined(std::span<const DepthSample<S>> samples, int degree) {
+S expects_determined(std::span<const DepthSample<S>> samples, std::size_t parameters) {
   const char* const owner = "fit_absorption";
-  std::vector<S> depths, radii;
+  std::vector<S> depths;
+  S rho_sq_max = S(0);
   for (const DepthSample<S>& s : samples) {
     require(s);
     depths.push_back(s.depth_mm);
-    radii.push_back(s.rho_sq_mm2);
+    rho_sq_max = (std::max)(rho_sq_max, squared_norm(s.plate_mm));
   }
-  expects(static_cast<int>(samples.size()) >= 4 + degree, owner, "number of samples",
+  expects(samples.size() >= parameters, owner, "number of samples",
           static_cast<long long>(samples.size()),
-          "at least the number of parameters, 4 + Degree: the reference and 3 known depths");
+          "at least the number of parameters; with Degree 0, the reference and 3 known depths");
   const long long distinct = distinct_values(depths);
   expects(distinct >= 3, owner, "number of distinct depths", distinct,
           ">= 3, further apart than a thousandth of the largest");
-  const long long rings = distinct_values(radii);
-  expects(rings > degree, owner, "number of distinct rho_sq_mm2", rings,
-          "> Degree, further apart than a thousandth of the largest");
-  return *std::max_element(radii.begin(), radii.end());
+  return rho_sq_max;
 }
 
 }  // namespace detail
 
-/// Finds the fluid and g, a polynomial of degree `Degree` in rho^2, from at least 4 + Degree
-/// samples at 3 or more depths. With only that many there can be two exact solutions (4 % of random
-/// sensors); the one with the smaller delta is returned. One more depth avoids this. Refuses
-/// samples that do not determine the parameters, and names what is missing (parameter_error).
-/// `grey_noise`: sd of a colour of weight 1, grey levels; 0: from the residuals. Allocates;
-/// O(samples) per iteration, after some 700 trial fluids.
+/// Finds the fluid, g, a polynomial of degree `Degree` over the plate, and kappa, linear over the
+/// plate (one number if Degree is 0), from samples at 3 or more depths. With 4 samples of Degree 0
+/// there can be two exact solutions (4 % of random sensors); the one with the smaller delta is
+/// returned. One more depth avoids this. Refuses samples that do not determine the parameters, and
+/// names what is missing (parameter_error). `grey_noise`: sd of a colour of weight 1, grey levels;
+/// 0: from the residuals. Allocates; O(samples) per iteration, after some 700 trial fluids on at
+/// most 400 of the samples, with Degree 0.
 template <int Degree = 0, scalar S = double>
 AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
                                         const std::type_identity_t<S>& grey_noise = S(0)) {
   using std::sqrt;
   const char* const owner = "fit_absorption";
   require(owner, {{"grey_noise", grey_noise, not_negative}});
-  const S rho_sq = detail::expects_determined(samples, Degree);
-  const S rho_sq_max = rho_sq > S(0) ? rho_sq : S(1);
-  detail::AbsorptionProblem<S> problem(samples, rho_sq_max);
-  auto p = detail::search_absorption(problem, Degree + 2, 60);
-  expects(
-      is_finite(p.cost), owner, "residual", p.cost,
-      "finite with kappa > 0 and g > 0: colours must change with the depth; check whether red and "
-      "green are exchanged");
-  AbsorptionFit<S, Degree> fit;
+  using Fit = AbsorptionFit<S, Degree>;
+  const S rho_sq = detail::expects_determined(samples, Fit::parameters);
+  const S scale_mm = rho_sq > S(0) ? S(sqrt(rho_sq)) : S(1);
+  std::vector<DepthSample<S>> few;
+  const std::size_t stride = (samples.size() + 399) / 400;
+  for (std::size_t k = 0; k < samples.size(); k += stride) {
+    few.push_back(samples[k]);
+  }
+  const auto start = detail::search_absorption(detail::AbsorptionProblem<S, 0>(few, scale_mm), 60);
+  detail::AbsorptionProblem<S, Degree> problem(samples, scale_mm);
+  auto p = problem.project(start.c_red, start.delta, {});
+  expects(is_finite(start.cost) && is_finite(p.cost), owner, "residual",
+          is_finite(start.cost) ? p.cost : start.cost,
+          "finite with kappa > 0 and g > 0: colours must change with the depth; check whether red "
+          "and green are exchanged");
+  Fit fit;
   bool converged = false;
   for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
     problem.weigh(p);
@@ -348,10 +380,10 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 
   // R over the scales of the parameters, for a condition number that does not depend on units;
   // delta may be 0
-  constexpr std::size_t linear = Degree + 2, all = linear + 2;
+  constexpr std::size_t linear = Fit::linear, all = Fit::parameters;
   std::array<S, all> size;
-  size.fill(p.linear[1]);
-  size[0] = p.linear[0];
+  size.fill(p.linear[Fit::kappa_terms]);
+  std::fill_n(size.begin(), Fit::kappa_terms, p.linear[0]);
   size[linear] = p.c_red;
   size[linear + 1] = (std::max)(p.delta, p.c_red / S(10));
   const std::vector<S> covariance = p.triangle.covariance(all);
@@ -365,18 +397,18 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.condition = sqrt(r_sq * inverse_sq);
   expects(is_finite(fit.condition) && fit.condition < S(1e8), owner, "condition number",
           fit.condition,
-          "< 1e8: the depths must spread over several mm, and differ at every radius");
+          "< 1e8: the depths must spread over several mm, and differ at every place");
 
   fit.fluid.c_red_per_mm = p.c_red;
   fit.fluid.c_green_per_mm = p.c_red + p.delta;
   fit.fluid.kappa = p.linear[0];
-  for (std::size_t j = 0; j < fit.scattering.coefficient.size(); ++j) {
-    fit.scattering.coefficient[j] = p.linear[j + 1];
-  }
-  fit.scattering.rho_max_mm = sqrt(rho_sq_max);
+  fit.light.scattering.scale_mm = fit.light.kappa.scale_mm = scale_mm;
+  const auto of_g = p.linear.begin() + Fit::kappa_terms;
+  std::copy(p.linear.begin(), of_g, fit.light.kappa.coefficient.begin());
+  std::copy(of_g, p.linear.end(), fit.light.scattering.coefficient.begin());
   fit.delta_at_limit = !(p.delta > S(0));
 
-  const int left = static_cast<int>(samples.size()) - (4 + Degree);
+  const double left = static_cast<double>(samples.size()) - static_cast<double>(all);
   const S by_residual = left > 0 ? S(sqrt(p.cost / S(left))) : not_a_number<S>();
   const S noise = grey_noise > S(0) ? grey_noise : by_residual;
   for (std::size_t i = 0; i < all; ++i) {  // c_red and delta come first
@@ -386,13 +418,14 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   }
   fit.explained = problem.explained_by_depth(p);
   S deepest = S(0), squares = S(0);
-  bool is_lit = fit.scattering.at(S(0)) > S(0);
+  bool is_lit = p.is_physical();
   for (const DepthSample<S>& s : samples) {
     deepest = (std::max)(deepest, s.depth_mm);
-    const S g = fit.scattering.at(s.rho_sq_mm2);
-    const auto [f, slope] = depth_equation(fit.fluid, s.pencil, g, s.colour, s.depth_mm);
-    is_lit = is_lit && g > S(0);
-    squares += square(f);
+    const S g = fit.light.scattering.at(s.plate_mm);
+    Absorption<S> here = fit.fluid;
+    here.kappa = fit.light.kappa.at(s.plate_mm);
+    is_lit = is_lit && g > S(0) && here.kappa > S(0);
+    squares += square(depth_equation(here, s.pencil, g, s.colour, s.depth_mm).first);
   }
   fit.residual_rms = sqrt(squares / S(static_cast<double>(samples.size())));
   fit.cause = !converged         ? cause::not_converged
@@ -409,21 +442,23 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
 template <scalar S, int Degree>
 S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& at) {
   using std::sqrt;
-  constexpr std::size_t all = Degree + 4;
-  detail::AbsorptionPoint<S> p{
-      fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm, {fit.fluid.kappa}};
-  const auto& g = fit.scattering.coefficient;
-  p.linear.insert(p.linear.end(), g.begin(), g.end());
+  constexpr std::size_t all = AbsorptionFit<S, Degree>::parameters;
+  detail::AbsorptionPoint<S, Degree> p{fit.fluid.c_red_per_mm,
+                                       fit.fluid.c_green_per_mm - fit.fluid.c_red_per_mm};
+  const auto& kappa = fit.light.kappa;
+  const auto& g = fit.light.scattering;
+  std::copy(g.coefficient.begin(), g.coefficient.end(),
+            std::copy(kappa.coefficient.begin(), kappa.coefficient.end(), p.linear.begin()));
   std::vector<S> by;
-  p.append(at, square(fit.scattering.rho_max_mm), S(1), by);
+  p.append(at, g.scale_mm, S(1), by);
   S variance = S(0);
   for (std::size_t i = 0; i < all; ++i) {
     for (std::size_t j = 0; j < all; ++j) {
       variance += by[i] * fit.covariance[(i + 2) % all][(j + 2) % all] * by[j];
     }
   }
-  const auto [f, slope] = depth_equation(fit.fluid, at.pencil, fit.scattering.at(at.rho_sq_mm2),
-                                         at.colour, at.depth_mm);
+  const auto [f, slope] =
+      depth_equation(fit.fluid, at.pencil, g.at(at.plate_mm), at.colour, at.depth_mm);
   return sqrt(variance) / slope;
 }
 

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The reference of the depth model, a set of planes over the image: the depth of the free pad, how
-// strongly the fluid scatters light there, g(x, y), and the gain of red. fit_reference() finds them
-// from one frame of the free pad, whose shape is known. The published quotient per pixel, g =
-// (kappa red - green exp(delta k l)) / W, is useless at the rim, where W vanishes. But g depends
-// only on the ray's angle. Therefore it is fitted as a polynomial in rho^2 by least squares on the
-// depth equation itself, which is linear in the coefficients and nowhere 0/0.
+// strongly the fluid scatters light there, g(x, y), and the gain of red, kappa(x, y) / kappa
+// (depth/pad_light.hpp). fit_reference() finds them from one frame of the free pad, whose shape is
+// known; calibrate/depth.hpp finds them from presses, too.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,41 +18,13 @@
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/depth/pad_light.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
-
-/// Relation of stored intensities to grey levels 0..255, and the limits beyond which they carry no
-/// information. A pixel counts only if both its channels lie strictly between the two limits.
-struct GreyScale {
-  double units_per_level = 1;  ///< stored units in one grey level: 1 for 8 bit, 256 for 16 bit
-  double dark = 0;             ///< in stored units
-  double saturated = 255;      ///< in stored units
-
-  /// Whether an intensity carries information. False for NaN.
-  template <scalar S>
-  constexpr bool counts(const S& x) const {
-    return value(x) > scalar_real_t<S>(dark) && value(x) < scalar_real_t<S>(saturated);
-  }
-};
-
-/// Says which value is out of range; "" if none is. A scale has at most the levels of 8 bit.
-inline std::string check(const GreyScale& scale) {
-  const Range in_levels{.min = scale.dark, .max = 256 * scale.units_per_level, .above_min = true};
-  return check("GreyScale", {{"units_per_level", scale.units_per_level, positive},
-                             {"dark", scale.dark, finite_number},
-                             {"saturated", scale.saturated, in_levels}});
-}
-
-/// The scale of a cell type: 16-bit images hold 256 times the grey level, all others the grey
-/// level.
-template <class Cell>
-constexpr GreyScale grey_scale_of() {
-  return std::is_same_v<Cell, std::uint16_t> ? GreyScale{256, 0, 255 * 256} : GreyScale{};
-}
 
 /// The free pad, as the depth estimator needs it. Planes have rows x cols elements.
 template <scalar S>
@@ -79,39 +49,7 @@ struct DepthReference {
   std::size_t at(Index row, Index col) const { return static_cast<std::size_t>(row * cols + col); }
 };
 
-/// g as a polynomial in v = (rho / rho_max)^2; grey levels per mm^2.
-template <scalar S, int Degree = 3>
-struct RadialScattering {
-  std::array<S, static_cast<std::size_t>(Degree) + 1> coefficient =
-      detail::zeros<S, static_cast<std::size_t>(Degree) + 1>();  ///< of 1, v, v^2, ...
-  S rho_max_mm = S(1);  ///< distance from the axis of the farthest pixel of the fit, on the plate
-
-  S at(const S& rho_sq_mm2) const {
-    const S v = rho_sq_mm2 / (rho_max_mm * rho_max_mm);
-    S g = coefficient[static_cast<std::size_t>(Degree)];
-    for (int j = Degree - 1; j >= 0; --j) {
-      g = g * v + coefficient[static_cast<std::size_t>(j)];
-    }
-    return g;
-  }
-};
-
 namespace detail {
-
-/// Calls visit(row, col) for every pixel.
-template <class Visit>
-void each_pixel(Index rows, Index cols, const Visit& visit) {
-  for (Index i = 0; i < rows; ++i) {
-    for (Index j = 0; j < cols; ++j) {
-      visit(i, j);
-    }
-  }
-}
-
-template <scalar C>
-Ray<C> ray_of(const Camera<C>& camera, Index row, Index col) {
-  return ray_at_pixel(camera, C(static_cast<double>(row)), C(static_cast<double>(col)));
-}
 
 /// Shape of the free pad, to detect mistakes.
 struct FreePadShape {
@@ -184,66 +122,29 @@ inline double rim_depth_mm(double deepest_mm) {
   return 0.2 * deepest_mm;
 }
 
-/// The depth equation of a pixel of the free pad: known = g(rho) scattered.
-template <scalar C>
-struct ScatteringEquation {
-  C rho_sq_mm2;
-  C known;
-  C scattered;
-};
-
-/// g by least squares. In double, the cubic that is needed is far from losing digits. Refuses data
-/// that do not determine g.
-template <scalar C>
-RadialScattering<C> fit_scattering(const std::vector<ScatteringEquation<C>>& equations) {
-  using std::sqrt;
-  constexpr std::size_t n = 4;
-  C rho_sq_max = C(0);
-  for (const auto& e : equations) {
-    rho_sq_max = value(rho_sq_max) < value(e.rho_sq_mm2) ? e.rho_sq_mm2 : rho_sq_max;
-  }
-  std::array<C, n> projected = zeros<C, n>(), term;
-  SmallMatrix<C, n> normal;
-  normal.fill(projected);
-  for (const auto& [rho_sq, known, scattered] : equations) {
-    C power = scattered;
-    for (std::size_t a = 0; a < n; ++a, power = power * rho_sq / rho_sq_max) {
-      term[a] = power;
-      projected[a] = projected[a] + power * known;
-      for (std::size_t b = 0; b <= a; ++b) {
-        normal[a][b] = normal[b][a] = normal[a][b] + power * term[b];
-      }
-    }
-  }
-  const NormalEquations<C, n> solver(normal, static_cast<double>(1000 * epsilon<C>()));
-  expects(equations.size() >= n && solver.good, "fit_reference", "pixels with a known depth",
-          equations.size(),
-          "enough, and far enough apart, to determine the scattering over the radius");
-  return {solver.solve(projected), sqrt(rho_sq_max)};
-}
-
-/// Refuses a g that no fluid has. The pad holds one fluid, and a lens darkens toward the rim by
-/// less than half, so g may vary by a factor of 2 at most. It is hardly less on the axis than
-/// elsewhere, except where the membrane is pressed there. The limit of the residual, 5 grey levels,
-/// is what a poor camera with a noise of three grey levels leaves.
+/// Refuses a light that no pad has. It holds one fluid; lamp and lens may fall to a third toward
+/// the rim, but are hardly darker on the axis than elsewhere, except where the membrane is pressed
+/// there. The limit of the residual, 5 grey levels, is what a poor camera leaves.
 template <scalar S>
-void expects_scattering(const DepthReference<S>& reference, const S& on_axis) {
+void expects_light(const DepthReference<S>& reference, const S& on_axis) {
   constexpr const char* owner = "fit_reference";
-  double min_g = (std::numeric_limits<double>::infinity)();
-  double max_g = -min_g;
-  for (const S& g : reference.scattering) {
-    const auto plain = static_cast<double>(value(g));
-    min_g = plain < min_g ? plain : min_g;  // not for NaN
-    max_g = plain > max_g ? plain : max_g;
+  constexpr double infinite = (std::numeric_limits<double>::infinity)();
+  double min_g = infinite, max_g = -infinite, min_gain = infinite;
+  for (std::size_t k = 0; k < reference.scattering.size(); ++k) {
+    const auto g = static_cast<double>(value(reference.scattering[k]));
+    const auto gain = static_cast<double>(value(reference.red_gain[k]));
+    min_g = g < min_g ? g : min_g;  // not for NaN
+    max_g = g > max_g ? g : max_g;
+    min_gain = g == g && gain < min_gain ? gain : min_gain;
   }
-  const auto residual = static_cast<double>(value(reference.residual_rms));
   const double axis_share = static_cast<double>(value(on_axis)) / max_g;
-  expects(min_g > 0, owner, "scattering of the fluid", min_g,
+  const auto residual = static_cast<double>(value(reference.residual_rms));
+  expects(min_g > 0 && min_gain > 0, owner, "scattering of the fluid", min_g,
           "> 0: are red and green exchanged, is depth_mm the height of the free pad, and are the "
           "constants of absorption those of this fluid?");
   expects(
-      min_g >= 0.5 * max_g, owner, "least scattering, as a share of the largest", min_g / max_g,
-      ">= 0.5: is the frame one of the free pad, and depth_mm its height along each pixel's ray?");
+      min_g >= 0.3 * max_g, owner, "least scattering, as a share of the largest", min_g / max_g,
+      ">= 0.3: is the frame one of the free pad, and depth_mm its height along each pixel's ray?");
   expects(axis_share >= 0.75, owner, "scattering on the axis, as a share of the largest",
           axis_share, ">= 0.75: is the reference of the free pad?");
   expects(residual <= 5, owner, "residual in grey levels", residual,
@@ -252,19 +153,18 @@ void expects_scattering(const DepthReference<S>& reference, const S& on_axis) {
 
 }  // namespace detail
 
-/// Finds the reference from one frame of the free pad and its depth along each pixel's ray in mm,
-/// NaN outside the pad. An average of many frames is better: store it as 16 bit or float. Refuses
-/// grids of different sizes, data that do not determine g, and shapes that no free pad has, and
-/// names the likely mistake (parameter_error). If camera and fluid consist of dual numbers and S is
-/// that dual number, g carries the derivatives. O(rows cols); allocates.
+/// The reference for a light that is known, from one frame of the free pad and its depth along each
+/// pixel's ray in mm, NaN outside the pad. Where the light does not explain the frame (glare, dirt,
+/// a scratch), g is NaN and no depth is measured. Without `known` the light is fitted to the frame.
+/// O(rows cols); allocates.
 template <scalar S = float, scalar C, grid Red, grid Green, grid Depth>
 DepthReference<S> fit_reference(const Camera<C>& camera,
                                 const Absorption<C>& fluid,
                                 const Red& red,
                                 const Green& green,
                                 const Depth& depth_mm,
-                                const GreyScale& scale = grey_scale_of<cell_t<Red>>()) {
-  using std::exp;
+                                const GreyScale& scale = grey_scale_of<cell_t<Red>>(),
+                                const PadLight<C>* known = nullptr) {
   using std::sqrt;
   const auto reds = as_view(red);
   const auto greens = as_view(green);
@@ -292,47 +192,56 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   const auto shape = detail::shape_of_free_pad(camera, max_depth_mm, plain_depth);
   detail::expects_free_pad(shape, max_depth_mm);
 
-  std::vector<detail::ScatteringEquation<C>> equations;
+  C scale_mm = known != nullptr ? known->kappa.scale_mm : C(1);
   detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
-    const C l = static_cast<C>(depths(i, j));
-    const C r = static_cast<C>(reds(i, j));
-    const C b = static_cast<C>(greens(i, j));
-    if (value(l) > 0 && value(l) <= value(fluid.max_depth_mm) && scale.counts(r) &&
-        scale.counts(b)) {
-      const Ray<C> ray = detail::ray_of(camera, i, j);
-      const Pencil<C> pencil = pencil_of(camera, ray);
-      const C delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
-      const C membrane = b * exp(delta * pencil.path_factor * l);
-      equations.push_back({square(ray.plate_rho_mm),
-                           (fluid.kappa * r - membrane) / C(scale.units_per_level),
-                           scattered_light(l, fluid.c_red_per_mm, pencil)});
+    if (known == nullptr && plain_depth(i, j) > 0) {
+      const C rho_sq = squared_norm(detail::on_plate(camera, i, j));
+      scale_mm = value(scale_mm * scale_mm) < value(rho_sq) ? C(sqrt(rho_sq)) : scale_mm;
     }
   });
-  const RadialScattering<C> g = detail::fit_scattering(equations);
-  C left_sq = C(0);
-  for (const auto& [rho_sq, known, scattered] : equations) {
-    left_sq = left_sq + square(known - g.at(rho_sq) * scattered);
+  const Index width = detail::block_width(shape.pixels);
+  auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, scale, width, scale_mm);
+  const PadLight<C> light = known != nullptr ? *known : detail::fit_light(blocks, scale_mm);
+  if (known != nullptr) {
+    expects(!blocks.empty(), "fit_reference", "blocks of pixels with a known depth", 0, ">= 1");
+    detail::mark_unexplained(light, blocks);
   }
-  // The square root has no derivative at 0.
-  const C mean_sq = left_sq / C(static_cast<double>(equations.size()));
-  reference.residual_rms = S(value(mean_sq) > 0 ? sqrt(mean_sq) : C(0));
-  reference.pixels_used = static_cast<Index>(equations.size());
 
-  double light = 0, count = 0;
+  double bright = 0, count = 0;
   detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
     const double l = plain_depth(i, j);
     const bool inside = l >= 0 && l <= max_depth_mm;
+    const Point2<C> place = detail::on_plate(camera, i, j);
     reference.depth_mm.push_back(inside ? S(static_cast<C>(depths(i, j))) : not_a_number<S>());
-    reference.scattering.push_back(
-        inside ? S(g.at(square(detail::ray_of(camera, i, j).plate_rho_mm))) : not_a_number<S>());
+    reference.scattering.push_back(inside ? S(light.scattering.at(place)) : not_a_number<S>());
+    reference.red_gain.push_back(inside ? S(light.kappa.at(place) / fluid.kappa)
+                                        : not_a_number<S>());
     const C b = static_cast<C>(greens(i, j));
     if (l >= 0 && l <= detail::rim_depth_mm(shape.deepest_mm) && scale.counts(b)) {
-      light += static_cast<double>(value(b)) / scale.units_per_level;
+      bright += static_cast<double>(value(b)) / scale.units_per_level;
       count += 1;
     }
   });
-  reference.rim_green = S(count > 0 ? light / count : 0);
-  detail::expects_scattering(reference, S(g.at(C(0))));
+  reference.rim_green = S(count > 0 ? bright / count : 0);
+
+  C left_sq = C(0);
+  for (const detail::FreeBlock<C>& b : blocks) {
+    if (b.fits) {
+      left_sq = left_sq + square(b.residual(light));
+      reference.pixels_used += width * width;
+    }
+  }
+  // The square root has no derivative at 0.
+  const C mean_sq = left_sq * C(static_cast<double>(width * width)) /
+                    C(static_cast<double>((std::max)(reference.pixels_used, Index(1))));
+  reference.residual_rms = S(value(mean_sq) > 0 ? sqrt(mean_sq) : C(0));
+  detail::expects_light(reference, S(light.scattering.at({C(0), C(0)})));
+  for (const detail::FreeBlock<C>& b : blocks) {
+    detail::each_pixel(b.fits ? 0 : width, width, [&](Index i, Index j) {
+      reference.scattering[static_cast<std::size_t>((b.row + i) * reference.cols + b.col + j)] =
+          not_a_number<S>();
+    });
+  }
   return reference;
 }
 

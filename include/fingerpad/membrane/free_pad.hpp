@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
@@ -70,6 +72,37 @@ class FreePad {
   /// of the apex below 2.
   std::optional<FreeRim<S>> rim(const S& load_per_mm) const {
     using std::sin;
+    const auto stretch_at = apex_stretch(load_per_mm);
+    if (!stretch_at) {
+      return {};
+    }
+    const Place at = profile(*stretch_at, load_per_mm);
+    const S hoop = at.r / cap_.rho_mm(S(0));
+    const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop);
+    return FreeRim<S>{at.phi, along, -at.z};
+  }
+
+  /// Points of the meridian under this load, from the apex to the rim: distance from the axis and
+  /// height above the rim's level, some hundredths of a millimetre apart. Empty where rim() is.
+  std::vector<Point2<S>> meridian(const S& load_per_mm) const {
+    std::vector<Point2<S>> points;
+    if (const auto stretch = apex_stretch(load_per_mm)) {
+      points.push_back({S(0), S(0)});
+      const S end = profile(*stretch, load_per_mm, 600, &points).z;
+      for (Point2<S>& p : points) {
+        p.y = p.y - end;
+      }
+    }
+    return points;
+  }
+
+ private:
+  struct Place {
+    S r, z, phi;
+  };
+
+  /// The stretch of the apex at which the membrane ends at its rim.
+  std::optional<S> apex_stretch(const S& load_per_mm) const {
     const auto miss = [&](const S& stretch) {
       return S(profile(stretch, load_per_mm).r - cap_.base_radius_mm);
     };
@@ -95,16 +128,8 @@ class FreePad {
         break;
       }
     }
-    const Place at = profile(stretch, load_per_mm);
-    const S hoop = at.r / cap_.rho_mm(S(0));
-    const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop);
-    return FreeRim<S>{at.phi, along, -at.z};
+    return stretch;
   }
-
- private:
-  struct Place {
-    S r, z, phi;
-  };
 
   Place change(const S& arc, const Place& at, const S& q) const {
     using std::cos;
@@ -135,10 +160,12 @@ class FreePad {
 
   /// State at the rim, by the Runge-Kutta method from the apex at (0, 0). r = 0 if the cap closes
   /// before the rim.
-  Place profile(const S& apex_stretch, const S& q) const {
+  Place profile(const S& apex_stretch,
+                const S& q,
+                int steps = 60,
+                std::vector<Point2<S>>* points = nullptr) const {
     const S l = apex_stretch, l_sq = l * l, m = cap_.mooney_share;
     const S tension = (S(1) - S(1) / (l_sq * l_sq * l_sq)) * (S(1) - m + m * l_sq);
-    constexpr int steps = 60;
     S arc = arc_mm_ / S(2000);
     const S step = (arc_mm_ - arc) / S(steps);
     const S bend = l * q / (S(2) * tension);
@@ -157,6 +184,9 @@ class FreePad {
       arc = arc + step;
       if (!(value(at.phi) < 3) || !(value(at.r) > 0)) {
         return {S(0), S(0), S(0)};
+      }
+      if (points != nullptr) {
+        points->push_back({at.r, at.z});
       }
     }
     return at;

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// A finger of one's own, from pictures to depth: a pad of rubber under a lamp that falls to one
+// side, with a spot and colour across.
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "calibrate/calibrations.hpp"
+#include "calibrate/shape.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth/depth.hpp"
+#include "fingerpad/membrane/free_pad.hpp"
+#include "replay/io/images.hpp"
+#include "support/catch.hpp"
+#include "support/pad.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using calibrate::DepthMap;
+using fingerpad::Camera;
+using fingerpad::Point3;
+
+const Camera<double> camera{50, 1.33, 79.6, 79.1, 0.25};
+const fingerpad::Absorption<double> fluid{0.029, 0.0336, 0.9924, 18};
+constexpr double base_mm = 18.7, ball_mm = 10;
+constexpr int size_px = 160;
+
+const calibrate::Meridian& true_meridian() {
+  static const auto meridian = fingerpad::FreePad<double>({base_mm, 11, 0.1}).meridian(0.016 / 0.5);
+  return meridian;
+}
+
+/// The lowest point of the ball that just touches the pad at this distance from the axis.
+double touch_mm(double rho_mm) {
+  double highest = 0;
+  for (const auto& p : true_meridian()) {
+    const double beside = p.x - rho_mm;
+    if (std::abs(beside) < ball_mm) {
+      highest = std::fmax(highest, p.y + std::sqrt(ball_mm * ball_mm - beside * beside));
+    }
+  }
+  return highest - ball_mm;
+}
+
+/// 16-bit picture of a membrane at these depths; the noise is that of the mean of 16 frames.
+cv::Mat picture(const DepthMap& depth_mm, test::Random& random, double noise = 0.25) {
+  cv::Mat_<cv::Vec3w> image(depth_mm.size());
+  for (int i = 0; i < image.rows; ++i) {
+    for (int j = 0; j < image.cols; ++j) {
+      const auto l = static_cast<double>(depth_mm(i, j));
+      const auto at = point_at(camera, double(i), double(j), 0.0);
+      const double x = at.x / 20, y = at.y / 20;
+      const double spot = std::exp(-((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2)) / 0.5);
+      const double lamp = 1 + 0.08 * x - 0.06 * y + 0.06 * spot;
+      const auto light = pencil_of(camera, ray_at_pixel(camera, double(i), double(j)));
+      const auto c = std::isfinite(l) ? colour_at_depth(fluid, light, 180.0, 0.05, l)
+                                      : fingerpad::Colour<double>{5, 5};
+      const auto stored = [&](double level) {
+        return cv::saturate_cast<ushort>(256 * (level + noise * random.normal()));
+      };
+      image(i, j) = {stored(5), stored(c.green * lamp), stored(c.red * lamp / (1 + 0.02 * x))};
+    }
+  }
+  return image;
+}
+
+/// The pad with a ball or a plate pressed into it.
+DepthMap pressed(const DepthMap& free_mm, const calibrate::Sphere& ball) {
+  DepthMap depth = free_mm.clone();
+  for (int i = 0; i < depth.rows; ++i) {
+    for (int j = 0; j < depth.cols; ++j) {
+      const auto on = static_cast<float>(calibrate::depth_on(camera, i, j, ball));
+      depth(i, j) = on < depth(i, j) ? on : depth(i, j);
+    }
+  }
+  return depth;
+}
+
+/// Writes what a person records; one press may lie `aside_mm` from where it is written down.
+fs::path record(double aside_mm) {
+  test::Random random(3);
+  const fs::path folder = fs::temp_directory_path() / "fingerpad_own_finger";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "free");
+  fs::create_directories(folder / "frames");
+  const DepthMap free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
+  replay::write_png(folder / "reference.png", picture(free_mm, random));
+  std::ofstream touches(folder / "touches.csv");
+  touches << "x_mm,y_mm,z_mm\n0,0," << touch_mm(0) + 0.01 * random.normal() << "\n";
+  for (int k = 0; k < 24; ++k) {
+    const double rho = base_mm * (0.3 + 0.3 * (k % 3)), angle = 2.1 * k;
+    touches << rho * std::cos(angle) << "," << rho * std::sin(angle) << ","
+            << touch_mm(rho) + 0.01 * random.normal() << "\n";
+  }
+  std::ofstream presses(folder / "presses.csv");
+  presses << "frame,x_mm,y_mm,z_mm,radius_mm\n";
+  const double places[][4] = {{0, 0, 9, 12},  {0, 0, 5, 12},  {6, 0, 7, 12},
+                              {-4, 5, 6, 12}, {0, -7, 4, 12}, {0, 0, 10, 1e6}};
+  int frame = 0;
+  for (const auto& [x, y, z, radius] : places) {
+    const double moved = frame == 2 ? aside_mm : 0;
+    const auto depth = pressed(free_mm, {{x + moved, y, z + radius}, radius});
+    replay::write_png(folder / "frames" / (std::to_string(frame) + ".png"), picture(depth, random));
+    presses << frame++ << "," << x << "," << y << "," << z << "," << radius << "\n";
+  }
+  std::ofstream(folder / "sensor.json")
+      << R"({"camera": {"plate_distance_mm": 50, "refractive_index": 1.33,)"
+      << R"( "center_px": [79.6, 79.1], "pitch_mm": 0.25}})";
+  return folder;
+}
+
+calibrate::Report calibrated(const fs::path& folder) {
+  const fs::path sensor = folder / "sensor.json";
+  save(calibrate::shape(folder, sensor, {base_mm, 0, ball_mm, 0, false}), sensor);
+  const auto outcome = calibrate::absorption(folder, sensor);
+  save(outcome, sensor);
+  return outcome.reports.front();
+}
+
+}  // namespace
+
+TEST_CASE("a finger of one's own: depth from pictures under an uneven lamp", "[own]") {
+  const fs::path folder = record(0);
+  const auto report = calibrated(folder);
+  INFO(report.because);
+  CHECK(report.verdict == calibrate::Verdict::good);
+  const replay::Sensor sensor = replay::read_sensor(folder / "sensor.json");
+  REQUIRE(sensor.light.has_value());
+
+  const DepthMap free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
+  const DepthMap known_mm = replay::read_depth_image(folder / "reference_depth.tiff");
+  const cv::Mat free = replay::read_colour_image(folder / "reference.png");
+  const auto reference = fingerpad::fit_reference(
+      sensor.camera, sensor.absorption, fingerpad::channel<std::uint16_t>(free, 2),
+      fingerpad::channel<std::uint16_t>(free, 1), known_mm,
+      fingerpad::grey_scale_of<std::uint16_t>(), &*sensor.light);
+  fingerpad::DepthEstimator<float> estimate(sensor.camera, sensor.absorption, reference,
+                                            {.window_px = 1});
+  test::Random random(9);
+  for (const calibrate::Sphere& ball :
+       {calibrate::Sphere{{3, -4, 8 + 15.0}, 15}, calibrate::Sphere{{-5, 0, 6 + 9.0}, 9}}) {
+    const DepthMap truth = pressed(free_mm, ball);
+    const cv::Mat seen = picture(truth, random, 0);
+    DepthMap depth(truth.size());
+    const auto result = estimate(fingerpad::channel<std::uint16_t>(seen, 2),
+                                 fingerpad::channel<std::uint16_t>(seen, 1), depth);
+    CHECK(result.ok());
+    double sum = 0, count = 0;
+    for (int i = 0; i < depth.rows; ++i) {
+      for (int j = 0; j < depth.cols; ++j) {
+        const auto at = point_at(camera, double(i), double(j), 0.0);
+        if (std::hypot(at.x, at.y) < 14) {
+          sum += std::abs(static_cast<double>(depth(i, j) - truth(i, j)));
+          count += 1;
+        }
+      }
+    }
+    CHECK(sum / count < 0.02);
+  }
+}
+
+TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
+  const auto report = calibrated(record(0.5));
+  CHECK(report.verdict == calibrate::Verdict::doubtful);
+  CHECK(report.because.find("press 2 is not where") != std::string::npos);
+}
+
+TEST_CASE("a finger of one's own: the free shape from touches", "[own]") {
+  std::vector<Point3<double>> touches;
+  const auto touch = [&](double share) {
+    for (int k = 0; k < 6; ++k) {
+      const double rho = share * base_mm, angle = k + 10 * share;
+      touches.push_back({rho * std::cos(angle), rho * std::sin(angle), touch_mm(rho)});
+    }
+  };
+  const auto error_mm = [&](const calibrate::TouchedShape& fit) {
+    const auto found = calibrate::depth_of_shape(camera, {size_px, size_px}, fit.meridian);
+    const auto truth = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
+    double worst = 0;
+    for (int i = 0; i < size_px; ++i) {
+      for (int j = 0; j < size_px; ++j) {
+        const auto at = point_at(camera, double(i), double(j), 0.0);
+        if (std::hypot(at.x, at.y) < 14) {
+          worst = std::fmax(worst, std::abs(static_cast<double>(found(i, j) - truth(i, j))));
+        }
+      }
+    }
+    return worst;
+  };
+  for (const double share : {0.0, 0.3, 0.6, 0.85}) {
+    touch(share);
+  }
+  const auto rubber = calibrate::fit_shape(touches, {ball_mm, base_mm, 0, true});
+  CHECK(error_mm(rubber) < 0.02);
+  CHECK(rubber.reach_mm < 0.75 * base_mm);
+  // without rubber the touches must reach further, and the fit says how far they did
+  const auto near = calibrate::fit_shape(touches, {ball_mm, base_mm, 0, false});
+  touch(1.0);
+  touch(1.15);
+  const auto far = calibrate::fit_shape(touches, {ball_mm, base_mm, 0, false});
+  CHECK(error_mm(far) < 0.03);
+  CHECK(error_mm(far) < error_mm(near));
+  CHECK(far.reach_mm > 0.75 * base_mm);
+}
