@@ -72,10 +72,9 @@ void add(const std::string& name, const Frames& frames, long bytes, Find find) {
 void add_finder(const std::string& name, const Frames& frames, const DotFinderOptions& options) {
   const DotFinder found(frames.frames[0], options);
   const bench::Memory memory;
-  const auto finder = std::make_shared<const DotFinder>(found);
-  const auto state = std::make_shared<DotFinder::State>(finder->start());
+  const auto finder = std::make_shared<DotFinder>(found);
   add(name, frames, memory.bytes(), [=](const cv::Mat& frame, DotPlaces& dots) {
-    benchmark::DoNotOptimize((*finder)(frame, dots, *state));
+    benchmark::DoNotOptimize((*finder)(frame, dots));
   });
 }
 

@@ -19,13 +19,10 @@ namespace {
 
 /// Tracks the dots through pictures.
 template <class Take>
-void follow(const fingerpad::DotFinder& finder,
-            const std::vector<cv::Mat>& pictures,
-            const Take& take) {
-  auto state = finder.start();
+void follow(fingerpad::DotFinder finder, const std::vector<cv::Mat>& pictures, const Take& take) {
   cv::Mat_<cv::Vec2d> dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
   for (const cv::Mat& picture : pictures) {
-    if (!finder(picture, dots, state).ok()) {
+    if (!finder(picture, dots).ok()) {
       dots = cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
     }
     take(dots);
@@ -38,7 +35,7 @@ Outcome dots(const Path& recording, const Path& sensor_file) {
   const auto pictures = read_pictures(recording / "free", known_pictures(sensor_file));
   const fingerpad::DotFinder finder(pictures.front());
   if (!finder.ok()) {
-    replay::fail(recording / "free", "the first image shows no grid of 9 or more dots");
+    replay::fail(recording / "free", "the first image shows " + finder.refusal());
   }
   std::vector<cv::Mat_<cv::Vec2d>> frames;
   Plot plot{"frame", "mean distance from frame 0 [px]", {}};

@@ -6,15 +6,11 @@
 #include <array>
 #include <limits>
 #include <opencv2/core/types.hpp>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "fingerpad/dots/dot_tracker.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
-#include "support/generators.hpp"
 #include "support/numbers.hpp"
 
 using namespace fingerpad;
@@ -29,33 +25,10 @@ struct OwnPoint {
   double down;
 };
 
-using Cell = std::pair<Index, Index>;
 using Dots = ForeignImage<Point2<double>>;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Dots all_present(Index rows, Index cols) {
-  Dots dots(rows, cols);
-  for (Index i = 0; i < rows; ++i) {
-    for (Index j = 0; j < cols; ++j) {
-      grid_traits<Dots>::at(dots, i, j) = {static_cast<double>(j), static_cast<double>(i)};
-    }
-  }
-  return dots;
-}
-
-template <int Neighbours>
-std::multiset<Cell> visited(const Dots& dots, Index row, Index col) {
-  std::multiset<Cell> cells;
-  const int found = detail::for_each_neighbour<Neighbours>(
-      dots, row, col, [&](Index i, Index j, const Point2<double>& p) {
-        cells.insert({i, j});
-        RC_ASSERT(p.x == grid_traits<Dots>::at(dots, i, j).x);
-      });
-  RC_ASSERT(found == static_cast<int>(cells.size()));
-  return cells;
-}
 
 }  // namespace
 
@@ -117,47 +90,6 @@ TEST_CASE("a dot with a coordinate that is not finite is missing", "[dots]") {
   CHECK(is_present(Point2<double>{999999, -999999}));
   CHECK_FALSE(is_present(Point2<double>{1e6, 0}));  // outside any pad or image
   CHECK_FALSE(is_present(Point3<double>{0, 0, -1e300}));
-}
-
-TEST_CASE("neighbours", "[dots]") {
-  rc::prop("are the present dots at distance one, each once, in any grid", [] {
-    const Index rows = test::whole(1, 5);
-    const Index cols = test::whole(1, 5);
-    Dots dots = all_present(rows, cols);
-    for (Index n = test::whole(0, rows * cols / 2); n > 0; --n) {
-      grid_traits<Dots>::at(dots, test::whole(0, rows - 1), test::whole(0, cols - 1)).y = missing;
-    }
-    const Index row = test::whole(0, rows - 1);
-    const Index col = test::whole(0, cols - 1);
-    std::multiset<Cell> side;
-    std::multiset<Cell> side_or_corner;
-    Index present = 0;
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < cols; ++j) {
-        if (is_present(grid_traits<Dots>::at(dots, i, j))) {
-          ++present;
-          const Index distance_sq = (i - row) * (i - row) + (j - col) * (j - col);
-          if (distance_sq == 1) side.insert({i, j});
-          if (distance_sq == 1 || distance_sq == 2) side_or_corner.insert({i, j});
-        }
-      }
-    }
-    RC_ASSERT(visited<4>(dots, row, col) == side);
-    RC_ASSERT(visited<8>(dots, row, col) == side_or_corner);
-    RC_ASSERT(count_present(dots) == present);
-  });
-
-  SECTION("by number at the corner, the edge and inside") {
-    const Dots dots = all_present(3, 4);
-    const auto none = [](Index, Index, const Point2<double>&) {};
-    CHECK(detail::for_each_neighbour(dots, 0, 0, none) == 3);
-    CHECK(detail::for_each_neighbour(dots, 0, 1, none) == 5);
-    CHECK(detail::for_each_neighbour(dots, 1, 1, none) == 8);
-    CHECK(detail::for_each_neighbour<4>(dots, 2, 3, none) == 2);
-    CHECK(detail::for_each_neighbour<4>(dots, 2, 1, none) == 3);
-    CHECK(detail::for_each_neighbour<4>(dots, 1, 1, none) == 4);
-    CHECK(count_present(dots) == 12);
-  }
 }
 
 TEST_CASE("dots that come as a computed grid or a view are counted alike", "[dots]") {

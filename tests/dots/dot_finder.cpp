@@ -38,10 +38,9 @@ DotPlaces free_of(const DotFinder& finder) {
 }
 
 /// Dots of `frame`, which follows the free pad.
-DotPlaces dots_in(const DotFinder& finder, const cv::Mat& frame) {
+DotPlaces dots_in(DotFinder finder, const cv::Mat& frame) {
   DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
-  auto state = finder.start();
-  CHECK(finder(frame, dots, state).ok());
+  CHECK(finder(frame, dots).ok());
   return dots;
 }
 
@@ -66,7 +65,7 @@ TEST_CASE("dots: a grid is found without a word about it, to a fraction of a pix
   print.pitch_px = 5 * print.radius_px;
   print.noise = 1;
   INFO("bright " << bright << ", rotated " << print.rotation_rad << ", radius " << print.radius_px);
-  const DotFinder finder(test::picture_of(print, test::places_of(print)));
+  DotFinder finder(test::picture_of(print, test::places_of(print)));
   REQUIRE(finder.ok());
   REQUIRE(finder.rows() == print.rows);
   REQUIRE(finder.cols() == print.cols);
@@ -83,7 +82,7 @@ TEST_CASE("dots: a frame that is moved has its dots moved alike") {
   Print print;
   print.fall = 0;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
   const cv::Vec2d by(GENERATE(-3, 0, 5), GENERATE(-4, 1));
   const DotPlaces found = dots_in(finder, test::picture_of(print, test::moved(truth, by)));
@@ -148,9 +147,8 @@ TEST_CASE("dots: a picture upside down has its dots upside down, also at the bor
 TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under its own name") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
-  auto state = finder.start();
   DotPlaces dots(print.rows, print.cols);
   for (int frame = 0; frame < 6; ++frame) {
     const DotPlaces now = test::moved(truth, {2.0 * frame, 0.5 * frame});
@@ -159,7 +157,7 @@ TEST_CASE("dots: what is lost is NaN, the others stay, and it comes back under i
     if (hides) {
       shown(2, 3) = shown(2, 4) = shown(7, 10) = cv::Vec2d::all(std::nan(""));
     }
-    const DotResult result = finder(test::picture_of(print, shown), dots, state);
+    const DotResult result = finder(test::picture_of(print, shown), dots);
     INFO("frame " << frame);
     CHECK(result.ok());
     CHECK(result.found == truth.rows * truth.cols - (hides ? 3 : 0));
@@ -181,7 +179,7 @@ TEST_CASE("dots: specks that are no dots take no name and move no dot") {
   const Case far = GENERATE(Case{7.0 / 3, 0.1}, Case{1.9, 1});
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
   std::mt19937 random(20110801);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -206,7 +204,7 @@ TEST_CASE("dots: specks that are no dots take no name and move no dot") {
 TEST_CASE("dots: what hides a part of the frame hides only dots there") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
   cv::Mat frame = test::picture_of(print, truth);
   const cv::Rect hidden(90, 80, 40, 30);
@@ -227,18 +225,17 @@ TEST_CASE("dots: what hides a part of the frame hides only dots there") {
 TEST_CASE("dots: the order of the spots does not matter") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotTracker tracker(truth);
+  DotFinder finder(test::picture_of(print, truth));
+  DotFinder again = finder;
   std::vector<Point2<double>> spots;
   for (const cv::Vec2d& dot : truth) {
     spots.push_back({dot[0] + 3, dot[1] - 2});
   }
   spots.push_back({100.5, 100.5});
   DotPlaces first(truth.size()), second(truth.size());
-  auto state = tracker.start();
-  REQUIRE(tracker(spots, first, state).ok());
+  REQUIRE(finder.label(spots, first).ok());
   std::shuffle(spots.begin(), spots.end(), std::mt19937(7));
-  state = tracker.start();
-  REQUIRE(tracker(spots, second, state).ok());
+  REQUIRE(again.label(spots, second).ok());
   CHECK(same(first, second));
   CHECK(test::errors_of(first, test::moved(truth, {3, -2})).worst_px < 1e-12);
 }
@@ -249,13 +246,14 @@ TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
   constexpr double pitch_px = 17;
   std::mt19937 random(20110801);
   std::uniform_real_distribution<double> unit(-1, 1);
-  DotPlaces free_pad(count, count);
-  for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < count; ++j) {
-      free_pad(i, j) = pitch_px * cv::Vec2d(j, i) + cv::Vec2d(50, 50);
-    }
-  }
-  const DotTracker tracker(free_pad);
+  Print print;
+  print.frame = {420, 420};
+  print.rows = print.cols = count;
+  print.pitch_px = pitch_px;
+  print.radius_px = 4;
+  const DotPlaces free_pad = test::places_of(print);
+  const DotFinder free_finder(test::picture_of(print, free_pad));
+  REQUIRE(free_finder.ok());
   const cv::Vec2d center = free_pad(count / 2, count / 2);
   for (int trial = 0; trial < 4; ++trial) {
     const cv::Vec2d shift = pitch_px * cv::Vec2d(1.5 * unit(random), 1.5 * unit(random));
@@ -281,8 +279,8 @@ TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
           {center[0] + 9 * pitch_px * unit(random), center[1] + 9 * pitch_px * unit(random)});
     }
     DotPlaces found(count, count);
-    auto state = tracker.start();
-    const DotResult result = tracker(spots, found, state);
+    DotFinder finder = free_finder;
+    const DotResult result = finder.label(spots, found);
     INFO("trial " << trial << ", shift " << shift << " px, rotation " << rotation);
     CHECK(result.found > 85 * count * count / 100);
     CHECK(test::errors_of(found, truth).worst_px < pitch_px / 2);
@@ -292,30 +290,28 @@ TEST_CASE("dots: smooth moves of several pitches at once keep the labels") {
 TEST_CASE("dots: a frame without them loses them, and the next one has them again") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
-  auto state = finder.start();
   DotPlaces dots(print.rows, print.cols);
-  const DotResult black = finder(cv::Mat(print.frame, CV_8UC3, cv::Scalar::all(0)), dots, state);
+  const DotResult black = finder(cv::Mat(print.frame, CV_8UC3, cv::Scalar::all(0)), dots);
   CHECK(black.status == DotStatus::lost);
   CHECK_FALSE(black.ok());
   CHECK(count_present(dots) == 0);
   const DotPlaces next = test::moved(truth, {4, 3});
-  CHECK(finder(test::picture_of(print, next), dots, state).ok());
+  CHECK(finder(test::picture_of(print, next), dots).ok());
   CHECK(test::errors_of(dots, next).count == print.rows * print.cols);
 }
 
 TEST_CASE("dots: what is no frame of the pad is refused and writes nothing") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
-  auto state = finder.start();
   DotPlaces dots = lost_everywhere(truth);
   DotPlaces smaller(print.rows, print.cols - 1, cv::Vec2d::all(0));
   const cv::Mat good = test::picture_of(print, truth);
   const auto refuses = [&](const cv::Mat& frame, DotPlaces& out) {
-    const DotResult result = finder(frame, out, state);
+    const DotResult result = finder(frame, out);
     CHECK(result.status == DotStatus::refused);
     CHECK_FALSE(result.ok());
     CHECK(cv::countNonZero(out.reshape(1)) == 0);
@@ -336,12 +332,11 @@ TEST_CASE("dots: a free frame without a grid says so") {
   for (const cv::Mat& frame :
        {noise, cv::Mat(240, 320, CV_8UC3, cv::Scalar(90, 120, 100)), cv::Mat(),
         cv::Mat(3, 3, CV_8UC3, cv::Scalar::all(0)), test::picture_of(few, test::places_of(few))}) {
-    const DotFinder finder(frame);
+    DotFinder finder(frame);
     CHECK_FALSE(finder.ok());
     CHECK(finder.rows() == 0);
-    auto state = finder.start();
     DotPlaces dots(0, 0);
-    CHECK_FALSE(finder(frame, dots, state).ok());
+    CHECK_FALSE(finder(frame, dots).ok());
   }
 }
 
@@ -350,7 +345,7 @@ TEST_CASE("dots: 16 bit, one channel and four show what 8 bit and three show") {
   const DotPlaces truth = test::places_of(print);
   const cv::Mat free_frame = test::picture_of(print, truth);
   const cv::Mat frame = test::picture_of(print, test::moved(truth, {3, 2}));
-  const DotFinder finder(free_frame);
+  DotFinder finder(free_frame);
   REQUIRE(finder.ok());
   const DotPlaces found = dots_in(finder, frame);
   cv::Mat wide, grey, four;
@@ -376,50 +371,9 @@ TEST_CASE("dots: channels that are left out do no harm") {
   }
   DotFinderOptions options;
   options.color_weights = {0, 1, 1};
-  const DotFinder finder(frame, options);
+  DotFinder finder(frame, options);
   REQUIRE(finder.ok());
   CHECK(test::errors_of(free_of(finder), truth).worst_px < 0.1);
-}
-
-TEST_CASE("dots: rows and columns that are given are kept") {
-  Print print;
-  print.rows = 5;
-  print.cols = 7;
-  const DotPlaces truth = test::places_of(print);
-  const cv::Mat frame = test::picture_of(print, truth);
-  DotFinderOptions options;
-  SECTION("fewer than the frame shows: the first") {
-    options.pattern.rows = 5;
-    options.pattern.cols = 6;
-    const DotFinder finder(frame, options);
-    REQUIRE(finder.ok());
-    CHECK(test::errors_of(free_of(finder), truth(cv::Rect(0, 0, 6, 5))).worst_px < 0.1);
-  }
-  SECTION("fewer, and where their middle is") {
-    options.pattern.rows = 5;
-    options.pattern.cols = 6;
-    options.pattern.middle_px = {truth(2, 4)[0] - 8, truth(2, 4)[1]};
-    const DotFinder finder(frame, options);
-    REQUIRE(finder.ok());
-    CHECK(test::errors_of(free_of(finder), truth(cv::Rect(1, 0, 6, 5))).worst_px < 0.1);
-  }
-  SECTION("more: a row that comes into sight later has its place") {
-    options.pattern.rows = 6;
-    options.pattern.cols = 7;
-    const DotFinder finder(frame, options);
-    REQUIRE(finder.ok());
-    CHECK(count_present(free_of(finder)) == 35);
-    print.rows = 6;
-    DotPlaces all(6, 7);
-    for (int j = 0; j < 7; ++j) {
-      for (int i = 0; i < 6; ++i) {
-        all(i, j) = truth(0, j) + i * (truth(1, j) - truth(0, j));
-      }
-    }
-    const DotPlaces found = dots_in(finder, test::picture_of(print, all));
-    CHECK(test::errors_of(found, all).count == 42);
-    CHECK(test::errors_of(found, all).worst_px < 0.1);
-  }
 }
 
 TEST_CASE("dots: a regular grid flattened is the same grid, also with dots missing") {
@@ -436,31 +390,6 @@ TEST_CASE("dots: a regular grid flattened is the same grid, also with dots missi
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 5; ++j) {
       CHECK(norm(flat(i, j) - dots(i, j)) < 1e-12);
-    }
-  }
-}
-
-TEST_CASE("dots: of the windows with as many dots, the one around the given middle is taken") {
-  detail::Places dots(7, 9, detail::no_place());
-  for (Index i = 0; i < 7; ++i) {
-    for (Index j = 0; j < 9; ++j) {
-      dots(i, j) = {10.0 * static_cast<double>(j), 12.0 * static_cast<double>(i)};
-    }
-  }
-  // every window, by a middle off its own by less than half a step
-  for (const auto& [rows, cols] : {std::pair<Index, Index>{2, 5}, {5, 2}, {4, 3}}) {
-    for (Index top = 0; top <= 7 - rows; ++top) {
-      for (Index left = 0; left <= 9 - cols; ++left) {
-        const detail::Place first = dots(top, left), last = dots(top + rows - 1, left + cols - 1);
-        for (const double off : {-4.0, 4.0}) {
-          const detail::Place middle = 0.5 * (first + last) + detail::Place{off, -off};
-          const detail::Places window = detail::best_window(dots, rows, cols, middle);
-          CAPTURE(rows, cols, top, left, off);
-          CHECK(window.rows() == rows);
-          CHECK(window.cols() == cols);
-          CHECK(norm(window(0, 0) - first) == 0);
-        }
-      }
     }
   }
 }
@@ -525,42 +454,16 @@ TEST_CASE("dots: spots that fit badly are dropped whichever of them comes first"
       spots.push_back(base(i, j) + detail::Place{0, first ? 3.45 : second ? -3.3 : 0.0});
     }
   }
-  const auto spacing_px = detail::spacings_px(base);
   for (std::size_t first = 0; first < spots.size(); ++first) {
     CAPTURE(first);
     std::vector<detail::Place> order = spots;
     std::swap(order[0], order[first]);
     const detail::SpotMap map(order);
-    const detail::DotMatcher matcher(base, spacing_px, map, 1.0);
-    const auto labels = matcher.match([](Index, Index) { return true; },
-                                      [](Index, Index) {
-                                        return detail::Place{0, 0};
-                                      });
-    CHECK(detail::count_labels(labels) == 40);
+    const auto labels = detail::DotGrowth(base, map).from({4, 1}, {0, 0});
+    CHECK(detail::number_of(labels) == 40);
     CHECK(labels(2, 3) == -1);
     CHECK(labels(2, 4) == -1);
   }
-}
-
-TEST_CASE("dots: every labelled dot counts, also that of the first spot") {
-  std::vector<detail::Place> spots;
-  detail::Places base(2, 4, detail::no_place());
-  for (Index i = 0; i < 2; ++i) {
-    for (Index j = 0; j < 4; ++j) {
-      base(i, j) = {10.0 * static_cast<double>(j), 10.0 * static_cast<double>(i)};
-      spots.push_back(base(i, j));
-    }
-  }
-  const detail::SpotMap map(spots);
-  const auto spacing_px = detail::spacings_px(base);
-  const detail::DotMatcher matcher(base, spacing_px, map, 1.0);
-  const auto labels = matcher.match([](Index, Index) { return true; },
-                                    [](Index, Index) {
-                                      return detail::Place{0, 0};
-                                    });
-  CHECK(detail::count_labels(labels) == 8);
-  // nothing has moved: no penalty
-  CHECK(matcher.score(labels) == Approx(8).epsilon(1e-12));
 }
 
 TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
@@ -581,7 +484,7 @@ TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
       block *= 1.16;
     }
   }
-  const DotFinder finder(frame);
+  DotFinder finder(frame);
   REQUIRE(finder.ok());
   CHECK(finder.pattern().bright == false);
   REQUIRE(finder.cols() == 6);
@@ -594,7 +497,7 @@ TEST_CASE("dots: where they cannot be, none is found") {
   DotFinderOptions options;
   options.where = cv::Mat_<unsigned char>(print.frame, 0);
   options.where(cv::Rect(0, 0, 170, 240)) = 1;
-  const DotFinder finder(test::picture_of(print, truth), options);
+  DotFinder finder(test::picture_of(print, truth), options);
   REQUIRE(finder.ok());
   for (const cv::Vec2d& dot : free_of(finder)) {
     CHECK((!is_present(dot) || dot[0] < 170));
@@ -602,19 +505,18 @@ TEST_CASE("dots: where they cannot be, none is found") {
   CHECK(finder.cols() == 6);
 }
 
-TEST_CASE("dots: a state is a value") {
+TEST_CASE("dots: a finder is a value") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotFinder finder(test::picture_of(print, truth));
+  DotFinder finder(test::picture_of(print, truth));
   REQUIRE(finder.ok());
   const cv::Mat one = test::picture_of(print, test::moved(truth, {4, 0}));
   const cv::Mat two = test::picture_of(print, test::moved(truth, {8, 1}));
   DotPlaces dots(truth.size()), again(truth.size());
-  auto state = finder.start();
-  CHECK(finder(one, dots, state).ok());
-  auto copy = state;
-  CHECK(finder(two, dots, state).ok());
-  CHECK(finder(two, again, copy).ok());
+  CHECK(finder(one, dots).ok());
+  DotFinder copy = finder;
+  CHECK(finder(two, dots).ok());
+  CHECK(copy(two, again).ok());
   CHECK(same(dots, again));
 }
 
@@ -628,7 +530,7 @@ TEST_CASE("dots: options that cannot be are refused with their name") {
     CHECK_THROWS_WITH(DotFinder(frame, options), Catch::Matchers::Contains(name));
   };
   refused("pattern.rows", [](auto& o) { o.pattern.rows = o.pattern.cols = 2000; });
-  refused("pattern.cols", [](auto& o) { o.pattern.rows = 5; });
+  refused("pattern.rows", [](auto& o) { o.pattern.rows = 5; });
   refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = 0.5; });
   refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = std::nan(""); });
   refused("pattern.pitch_px", [](auto& o) { o.pattern.pitch_px = 20; });
@@ -640,15 +542,13 @@ TEST_CASE("dots: options that cannot be are refused with their name") {
   refused("color_weights", [](auto& o) { o.color_weights = {0, -1, 1}; });
   refused("color_weights", [](auto& o) { o.color_weights = {0, 0, 0}; });
   refused("where", [](auto& o) { o.where = cv::Mat_<unsigned char>(5, 5, 1); });
-  refused("max_off", [](auto& o) { o.tracker.max_off = 0; });
-  CHECK_THROWS_WITH(DotTracker(DotPlaces(3, 2, cv::Vec2d(1, 1))),
-                    Catch::Matchers::Contains("free_px"));
+  refused("max_off", [](auto& o) { o.max_off = 0; });
 }
 
 TEST_CASE("dots: garbage among the spots is none") {
   Print print;
   const DotPlaces truth = test::places_of(print);
-  const DotTracker tracker(truth);
+  DotFinder finder(test::picture_of(print, truth));
   std::vector<Point2<double>> spots;
   for (const cv::Vec2d& dot : truth) {
     spots.push_back({dot[0], dot[1]});
@@ -659,24 +559,138 @@ TEST_CASE("dots: garbage among the spots is none") {
     spots.push_back({5, bad});
   }
   DotPlaces found(truth.size());
-  auto state = tracker.start();
-  const DotResult result = tracker(spots, found, state);
+  const DotResult result = finder.label(spots, found);
   CHECK(result.ok());
   CHECK(result.spots == truth.rows * truth.cols);
   CHECK(test::errors_of(found, truth).worst_px == 0);
 }
 
-TEST_CASE("dots: a free dot at an impossible position counts as not seen") {
+TEST_CASE("dots: a print that jumps as a whole keeps its labels") {
+  // a round print, as on a pad; from frame to frame it moves by up to two pitches
   Print print;
-  DotPlaces free = test::places_of(print);
-  free(2, 3) = {1e300, 5};
-  const DotTracker tracker(free);
-  DotPlaces found(free.size());
-  auto state = tracker.start();
-  const DotResult result = tracker(std::vector<Point2<double>>{}, found, state);
-  CHECK(result.expected == free.rows * free.cols - 1);
-  CHECK(std::abs(tracker.places_px()(2, 3).x - test::places_of(print)(2, 3)[0]) < 1);
+  print.frame = {360, 360};
+  print.rows = print.cols = 11;
+  DotPlaces truth = test::places_of(print);
+  for (cv::Vec2d& dot : truth) {
+    if (cv::norm(dot - truth(5, 5)) > 5.2 * print.pitch_px) {
+      dot = cv::Vec2d::all(std::nan(""));
+    }
+  }
+  DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  std::mt19937 random(20110801);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int frame = 0; frame < 100; ++frame) {
+    const DotPlaces now =
+        test::moved(truth, print.pitch_px * cv::Vec2d(unit(random), unit(random)));
+    std::vector<Point2<double>> spots;
+    for (const cv::Vec2d& dot : now) {
+      if (is_present(dot) && unit(random) < 0.9) {
+        spots.push_back({dot[0] + 0.2 * unit(random), dot[1] + 0.2 * unit(random)});
+      }
+    }
+    DotPlaces found(truth.size());
+    CAPTURE(frame);
+    REQUIRE(finder.label(spots, found).ok());
+    CHECK(test::errors_of(found, now).count >= 70);
+    CHECK(test::errors_of(found, now).worst_px < 1);
+  }
+}
 
-  const DotPlaces far(free.rows, free.cols, cv::Vec2d(1e300, 1e300));
-  CHECK_THROWS_WITH(DotTracker(far), Catch::Matchers::Contains("free_px = 0"));
+TEST_CASE("dots: where nothing tells by which rows and columns, none are given") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder free_finder(test::picture_of(print, truth));
+  const double jump = GENERATE(0.0, 0.4, 0.6, 1.0);  // pitches
+  std::vector<Point2<double>> spots;
+  for (int i = 0; i < truth.rows; ++i) {
+    for (int j = 0; j + 1 < truth.cols; ++j) {  // the last column is hidden
+      spots.push_back({truth(i, j)[0] + jump * print.pitch_px, truth(i, j)[1]});
+    }
+  }
+  DotFinder finder = free_finder;
+  DotPlaces found(truth.size());
+  CHECK(finder.label(spots, found).status == DotStatus::ambiguous);
+  CHECK(count_present(found) == 0);
+  for (int i = 0; i < 3; ++i) {  // three of its dots tell
+    spots.push_back({truth(i, 10)[0] + jump * print.pitch_px, truth(i, 10)[1]});
+  }
+  CHECK(finder.label(spots, found).ok());
+  CHECK(test::errors_of(found, test::moved(truth, {jump * print.pitch_px, 0})).worst_px < 1e-9);
+}
+
+TEST_CASE("dots: a print that reaches beyond the picture is followed by small steps") {
+  Print print;
+  print.rows = 14;
+  print.cols = 20;
+  const DotPlaces truth = test::places_of(print);
+  DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  const cv::Point2d first(truth(0, 0)[0], truth(0, 0)[1]);
+  const int row = cvRound((finder.free_px()(0, 0).y - first.y) / print.pitch_px);
+  const int col = cvRound((finder.free_px()(0, 0).x - first.x) / print.pitch_px);
+  DotPlaces found(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
+  for (int frame = 1; frame < 6; ++frame) {  // a pitch and a quarter
+    const DotPlaces now = test::moved(truth, {6.0 * frame, -2.0 * frame});
+    CHECK(finder(test::picture_of(print, now), found).ok());
+    const DotPlaces seen = now(cv::Rect(col, row, found.cols, found.rows));
+    CHECK(test::errors_of(found, seen).count > 90);
+    CHECK(test::errors_of(found, seen).worst_px < 0.3);
+  }
+}
+
+TEST_CASE("dots: another print than the one told is refused by what it shows") {
+  Print print;
+  print.rows = 7;
+  print.cols = 9;
+  DotPlaces truth = test::places_of(print);
+  DotFinderOptions options;
+  const auto told = [&](Index rows, Index cols) {
+    options.pattern.rows = rows;
+    options.pattern.cols = cols;
+    const DotFinder finder(test::picture_of(print, truth), options);
+    CHECK(finder.ok() == finder.refusal().empty());
+    return finder.refusal();
+  };
+  SECTION("without a middle") {
+    CHECK(told(0, 0) == "");
+    CHECK(told(7, 9) == "");
+    CHECK(told(8, 10) == "7 rows and 9 columns of dots, not 8 and 10");
+    CHECK(told(9, 7) == "7 rows and 9 columns of dots, not 9 and 7");
+    CHECK(told(9, 11) == "7 rows and 9 columns of dots, not 9 and 11");
+    CHECK(told(5, 9) == "7 rows and 9 columns of dots, not 5 and 9");
+  }
+  SECTION("with the middle, rows and columns on both sides may be hidden") {
+    options.pattern.middle_px = {truth(3, 4)[0] + 5, truth(3, 4)[1] - 5};
+    CHECK(told(7, 9) == "");
+    CHECK(told(9, 11) == "");
+    CHECK(told(8, 10) == "7 rows and 9 columns of dots, not 8 and 10");
+    CHECK(told(9, 7) == "7 rows and 9 columns of dots, not 9 and 7");
+    options.pattern.middle_px = {truth(3, 4)[0] + print.pitch_px / 2, truth(3, 4)[1]};
+    CHECK(told(7, 10) == "");
+  }
+  SECTION("an inner row is missing") {
+    truth.row(GENERATE(2, 3)) = cv::Vec2d::all(std::nan(""));
+    CHECK(told(0, 0).find("and 9 columns, and") != std::string::npos);
+    CHECK(told(7, 9) != "");
+  }
+}
+
+TEST_CASE("dots: random dots are no print") {
+  Print print;
+  print.radius_px = 4;
+  std::mt19937 random(20110801);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int picture = 0; picture < 8; ++picture) {
+    DotPlaces dots(1, 100);
+    for (cv::Vec2d& dot : dots) {
+      dot = {10 + 300 * unit(random), 10 + 220 * unit(random)};
+    }
+    DotFinderOptions options;
+    options.pattern.radius_px = picture % 2 == 0 ? 0 : 4;
+    const DotFinder finder(test::picture_of(print, dots), options);
+    CAPTURE(picture, finder.rows(), finder.cols());
+    CHECK_FALSE(finder.ok());
+    CHECK(finder.refusal() != "");
+  }
 }

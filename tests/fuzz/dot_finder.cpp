@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dot finder and tracker from any picture and any spots: a dot is finite and in its place, or NaN;
-// what is counted is what is there; a copied state gives the same bits.
+// Dot finder from any picture and any spots: a dot is finite and in its place, or NaN;
+// what is counted is what is there; a copied finder gives the same bits.
 // with: -lopencv_core -lopencv_imgproc
 #include "fingerpad/dots/dot_finder.hpp"
 
@@ -66,31 +66,34 @@ void try_finder(Input& in) {
     options.pattern.radius_px = radius;
     options.pattern.pitch_px = pitch;
   }
-  const DotFinder finder(picture(in, rows, cols, pitch, radius, 0), options);
+  DotFinder finder(picture(in, rows, cols, pitch, radius, 0), options);
   if (!finder.ok()) {
     return;
   }
-  auto state = finder.start();
   Places dots(finder.rows(), finder.cols()), again(finder.rows(), finder.cols());
   for (int frame = 0; frame < 3; ++frame) {
     const cv::Mat now = picture(in, rows, cols, pitch, radius, in.whole(0, 8));
-    auto copy = state;
+    DotFinder copy = finder;
     auto to = dots.view(), second = again.view();
-    const DotResult r = finder(now, to, state), same = finder(now, second, copy);
+    const DotResult r = finder(now, to), same = copy(now, second);
     require(r.status != DotStatus::refused, "a frame of the right size is accepted");
-    require(dots == again && r.found == same.found, "a copied state gives the same bits");
+    require(dots == again && r.found == same.found, "a copied finder gives the same bits");
     require(present(dots) == r.found && r.found <= finder.rows() * finder.cols(),
             "the number of dots found is that in the result");
   }
 }
 
-void try_tracker(Input& in) {
-  const Index rows = in.whole(0, 8), cols = in.whole(0, 8);
-  const Places free = fuzz::any_dots<Point2<double>>(in, rows, cols);
-  const DotTracker tracker(free.view(), DotTrackerOptions{in.number(0.05, 0.5)});
-  auto state = tracker.start();
-  Places dots(rows, cols), again(rows, cols);
-  for (int frame = 0; frame < 3; ++frame) {
+void try_labels(Input& in) {
+  const double pitch = in.number(8, 20);
+  DotFinder finder(picture(in, 90, 90, pitch, pitch / 4, 0));
+  const Index rows = finder.rows(), cols = finder.cols();
+  Places free(rows, cols), dots(rows, cols), again(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      free.view()(i, j) = finder.free_px()(i, j);
+    }
+  }
+  for (int frame = 0; frame < 3 && finder.ok(); ++frame) {
     const Places moved = fuzz::moved_dots(in, free);
     std::vector<Point2<double>> spots;
     for (Index i = 0; i < rows; ++i) {
@@ -101,11 +104,11 @@ void try_tracker(Input& in) {
     for (Index k = in.whole(0, 10); k > 0; --k) {
       spots.push_back({in.number(-50, 200), in.number(-50, 200)});
     }
-    auto copy = state;
+    DotFinder copy = finder;
     auto to = dots.view(), second = again.view();
-    const DotResult r = tracker(spots, to, state), same = tracker(spots, second, copy);
+    const DotResult r = finder.label(spots, to), same = copy.label(spots, second);
     require(r.status != DotStatus::refused, "a grid of the right size is accepted");
-    require(dots == again && r.found == same.found, "a copied state gives the same bits");
+    require(dots == again && r.found == same.found, "a copied finder gives the same bits");
     require(present(dots) == r.found, "the number of dots found is that in the result");
   }
 }
@@ -114,5 +117,5 @@ void try_tracker(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size,
-                   [](Input& in) { return in.flag() ? try_finder(in) : try_tracker(in); });
+                   [](Input& in) { return in.flag() ? try_finder(in) : try_labels(in); });
 }

@@ -267,15 +267,14 @@ cv::Mat with_padding(const cv::Mat& picture) {
 }
 
 std::string said_of_finder(const Pictures& pictures) {
-  const DotFinder finder(pictures.free, pictures.options);
+  DotFinder finder(pictures.free, pictures.options);
   if (!finder.ok()) {
-    return "no grid";
+    return finder.refusal();
   }
-  auto state = finder.start();
   test::DotPlaces dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
-  const DotResult result = finder(pictures.now, dots, state);
+  const DotResult result = finder(pictures.now, dots);
   if (!result.ok()) {
-    return "refused";
+    return name_of(result.status);
   }
   int count = 0, right = 0;
   for (int i = 0; i < dots.rows; ++i) {
@@ -487,27 +486,27 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
          p.now = test::picture_of(p.print, test::moved(test::places_of(p.print), p.by));
        },
        "right"},
-      {"padded rows now", [](Pictures& p) { p.now = with_padding(p.now); }, "refused"},
+      {"padded rows now", [](Pictures& p) { p.now = with_padding(p.now); }, "lost"},
       {"padded rows in both",
        [](Pictures& p) { p.now = with_padding(p.now), p.free = with_padding(p.free); },
-       "another motion"},
-      {"negative now", [](Pictures& p) { p.now = 255 - p.now; }, "refused"},
-      {"constant now", [](Pictures& p) { p.now.setTo(100); }, "refused"},
-      {"black now", [](Pictures& p) { p.now.setTo(0); }, "refused"},
-      {"half black now", [](Pictures& p) { p.now.rowRange(0, 120).setTo(0); }, "right"},
+       "32 beside them"},
+      {"negative now", [](Pictures& p) { p.now = 255 - p.now; }, "lost"},
+      {"constant now", [](Pictures& p) { p.now.setTo(100); }, "lost"},
+      {"black now", [](Pictures& p) { p.now.setTo(0); }, "lost"},
+      {"half black now", [](Pictures& p) { p.now.rowRange(0, 120).setTo(0); }, "ambiguous"},
       {"halves exchanged now",
        [](Pictures& p) {
          cv::Mat w;
          cv::hconcat(p.now.colRange(160, 320), p.now.colRange(0, 160), w);
          p.now = w;
        },
-       "refused"},
+       "lost"},
       {"a tenth of the light", [](Pictures& p) { p.now = p.now / 10; }, "right"},
-      {"saturated", [](Pictures& p) { p.now = p.now * 9; }, "refused"},
+      {"saturated", [](Pictures& p) { p.now = p.now * 9; }, "lost"},
       {"channels exchanged", [](Pictures& p) { cv::cvtColor(p.now, p.now, cv::COLOR_BGR2RGB); },
        "right"},
       {"12 bits in 16", [](Pictures& p) { p.now.convertTo(p.now, CV_16U, 16); }, "right"},
-      {"8 bits in 16", [](Pictures& p) { p.now.convertTo(p.now, CV_16U, 1); }, "refused"},
+      {"8 bits in 16", [](Pictures& p) { p.now.convertTo(p.now, CV_16U, 1); }, "lost"},
       {"floating point", [](Pictures& p) { p.now.convertTo(p.now, CV_32F); }, "refused"},
       {"another size", [](Pictures& p) { p.now = p.now.colRange(0, 319).clone(); }, "refused"},
       {"half size now", [](Pictures& p) { p.now = p.now.rowRange(0, 120).clone(); }, "refused"},
@@ -517,7 +516,7 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
          cv::resize(p.now, z, {}, 2, 2);
          p.now = z(cv::Rect(160, 120, 320, 240)).clone();
        },
-       "refused"},
+       "lost"},
       {"another pad's free frame",
        [](Pictures& p) {
          auto o = p.print;
@@ -525,26 +524,26 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
          o.radius_px = 4;
          p.free = test::picture_of(o, test::places_of(o));
        },
-       "refused"},
+       "lost"},
       {"free and now exchanged", [](Pictures& p) { std::swap(p.free, p.now); }, "another motion"},
       {"rows and cols exchanged",
        [](Pictures& p) {
          p.options.pattern.rows = 11;
          p.options.pattern.cols = 8;
        },
-       "right"},
+       "8 rows and 11 columns of dots, not 11 and 8"},
       {"fewer rows than there are",
        [](Pictures& p) {
          p.options.pattern.rows = 5;
          p.options.pattern.cols = 5;
        },
-       "right"},
+       "8 rows and 11 columns of dots, not 5 and 5"},
       {"more rows than there are",
        [](Pictures& p) {
          p.options.pattern.rows = 12;
          p.options.pattern.cols = 14;
        },
-       "right"},
+       "8 rows and 11 columns of dots, not 12 and 14"},
       {"radius in mm",
        [](Pictures& p) {
          p.options.pattern.radius_px = 0.4;
@@ -569,7 +568,7 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
          p.options.pattern.pitch_px = 48;
        },
        "right"},
-      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "refused"},
+      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "59 beside them"},
   };
   check(mistakes, said_of_finder);
 }

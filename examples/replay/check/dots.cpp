@@ -135,7 +135,7 @@ void check_print(const Recording& recording, Findings& findings) {
   const fingerpad::DotFinder finder(recording.reference, options);
   if (!finder.ok()) {
     findings.push_back({recording.sensor.reference_frame,
-                        "the image shows no grid of 9 or more dots",
+                        "the image shows " + finder.refusal(),
                         "Use a sharp image of the free pad, or remove \"dots\" from sensor.json."});
     return;
   }

@@ -92,7 +92,6 @@ void DotSource::read(const std::filesystem::path& file, int frame_count, cv::Siz
 void DotSource::follow(fingerpad::DotFinder finder) {
   how_ = "found in the frames";
   initial_ = free_dots(finder);
-  state_ = finder.start();
   finder_ = std::move(finder);
 }
 
@@ -130,7 +129,7 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
   options.pattern.cols = given.cols;
   options.pattern.radius_px = given.diameter_px / 2;
   options.pattern.bright = given.bright;
-  options.tracker.max_off = 0.3;  // for an elastic pad
+  options.max_off = 0.3;  // for an elastic pad
   auto finder = finder_of(folder, recording.reference, options);
   const int tried = (std::min)(first_frames, recording.frames.size());
   recording.frames.seek(0);
@@ -149,7 +148,7 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
 DotGrid DotSource::of(int frame, const cv::Mat& image) {
   if (finder_) {
     DotGrid dots = no_dots(initial_.size());
-    (void)(*finder_)(image, dots, *state_);
+    (void)(*finder_)(image, dots);
     return dots;
   }
   const auto listed = listed_.find(frame);

@@ -59,7 +59,6 @@ class DotSource {
   DotGrid initial_;
   std::map<int, DotGrid> listed_;
   std::optional<fingerpad::DotFinder> finder_;
-  std::optional<fingerpad::DotFinder::State> state_;
 };
 
 /// The print to find on the free pad: section "dots" of sensor.json, scaled to the pad's median

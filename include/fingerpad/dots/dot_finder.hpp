@@ -7,21 +7,26 @@
 //
 //   #include "fingerpad/adapt/opencv.hpp"            // makes cv::Mat_ a grid
 //   DotFinder finder(free_frame);                    // any pad with a grid of dots
-//   auto state = finder.start();
 //   cv::Mat_<cv::Vec2d> dots(finder.rows(), finder.cols());
-//   auto result = finder(frame, dots, state);        // NaN where a dot is lost
+//   auto result = finder(frame, dots);               // NaN where a dot is lost
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <iterator>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <utility>
+#include <string>
+#include <type_traits>
 #include <vector>
 
+#include "fingerpad/core/check.hpp"
+#include "fingerpad/core/dots.hpp"
+#include "fingerpad/core/grid.hpp"
+#include "fingerpad/dots/detail/dot_labels.hpp"
 #include "fingerpad/dots/detail/dot_lattice.hpp"
 #include "fingerpad/dots/detail/dot_spots.hpp"
-#include "fingerpad/dots/dot_tracker.hpp"
+#include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -34,9 +39,8 @@ struct DotPattern {
   double radius_px = 0;        ///< of a dot, >= 1
   double pitch_px = 0;         ///< between neighbouring dots, > 2 radii; needs a radius
   std::optional<bool> bright;  ///< true: dots brighter than the background; false: darker
-  /// Position of the middle of the print. If rows and columns can be counted in several ways, the
-  /// one with the middle nearest to this position is taken; without it, the one that begins with
-  /// the first dots.
+  /// Position of the middle of the print. With it, rows and columns at the border of the print may
+  /// be out of view on the free pad; without it, all that are given must be seen.
   Point2<double> middle_px = {not_a_number<double>(), not_a_number<double>()};
 };
 
@@ -48,54 +52,113 @@ struct DotFinderOptions {
   double min_contrast = 0.08;
   /// Weights of blue, green and red, >= 0 and not all 0. Use 0 for a channel that holds only noise.
   std::array<double, 3> color_weights = {1, 1, 1};
-  DotTrackerOptions tracker;
+  /// Deviation of a dot from the position predicted by its neighbours beyond which it may count as
+  /// lost, as a fraction of the pitch, > 0. Use 0.1 for a membrane over a fluid, which moves
+  /// smoothly, and 0.3 for dots behind an elastic pad, where a contact moves dots while those
+  /// beside it stay still.
+  double max_off = 0.1;
 };
 
-/// Finds and tracks the dots of a pad. Const: all memory of a pad is in its State.
-class DotFinder {
- public:
-  /// Memory of one pad. A value: copy it to try something, assign start() to reset it.
-  class State {
-    friend DotFinder;
-    DotTracker::State dots;
-    detail::SpotWorkspace workspace;
-  };
+inline std::string check(const DotFinderOptions& o) {
+  const DotPattern& p = o.pattern;
+  const auto counted = [](Index other) { return other == 0 ? within(0, 0) : within(2, 100); };
+  const Range weight = within(0, 1e6);
+  return check(
+      "DotFinder",
+      {{"pattern.rows", p.rows, counted(p.cols)},
+       {"pattern.cols", p.cols, counted(p.rows)},
+       {"pattern.radius_px", p.radius_px, p.radius_px == 0 ? within(0, 0) : at_least(1)},
+       {"pattern.pitch_px", p.pitch_px,
+        p.pitch_px == 0    ? within(0, 0)
+        : p.radius_px == 0 ? within(0, 0)
+                           : Range{.min = 2 * p.radius_px, .above_min = true}},
+       {"min_contrast", o.min_contrast, {.min = 0, .max = 1, .above_min = true, .below_max = true}},
+       {"color_weights", o.color_weights[0], weight},
+       {"color_weights", o.color_weights[1], weight},
+       {"color_weights", o.color_weights[2], weight},
+       {"the sum of color_weights", o.color_weights[0] + o.color_weights[1] + o.color_weights[2],
+        positive},
+       {"max_off", o.max_off, positive}});
+}
 
+enum class DotStatus : std::uint8_t {
+  ok,
+  lost,       ///< too few dots were recognised to trust any of them: all are NaN
+  ambiguous,  ///< the rows or columns may be off by a whole number: all are NaN
+  refused,    ///< frame or grid of another size or type: nothing was written
+};
+inline constexpr std::array<const char*, 4> dot_status_names = {"ok", "lost", "ambiguous",
+                                                                "refused"};
+constexpr const char* name_of(DotStatus status) {
+  return dot_status_names[static_cast<std::size_t>(status)];
+}
+
+struct [[nodiscard]] DotResult {
+  DotStatus status = DotStatus::refused;
+  Index found = 0;     ///< dots located in this frame, also some that the free pad did not show
+  Index expected = 0;  ///< dots seen on the free pad
+  Index spots = 0;     ///< spots in this frame, whether they are dots or not
+
+  bool ok() const { return status == DotStatus::ok; }
+};
+
+/// Finds and labels the dots of a pad. A value: it knows where the dots were in the last frame;
+/// copy it to return to a frame. One object a thread and pad.
+class DotFinder {
+  using Place = detail::Place;
+  using Places = detail::Places;
+
+ public:
   /// Finds the grid in `free_frame`: an image of the free pad, 8 or 16 bit (grey levels times 256),
-  /// with one, three or four channels. If it shows no grid of 9 or more dots, ok() is false and
-  /// every frame is refused. Refuses bad options (parameter_error). Takes up to a second if nothing
-  /// is known of the print.
+  /// with one, three or four channels. If it does not show the grid that the options describe,
+  /// ok() is false and every frame is refused. Refuses bad options (parameter_error). Takes up to a
+  /// second if nothing is known of the print.
   explicit DotFinder(const cv::Mat& free_frame, const DotFinderOptions& options = {})
-      : size_(free_frame.size()) {
-    check(free_frame, options);
+      : size_(free_frame.size()), max_off_(options.max_off) {
+    require(options);
+    const double side = (std::min)(free_frame.cols, free_frame.rows);
+    expects(options.pattern.radius_px <= side / 4, "DotFinder", "pattern.radius_px",
+            options.pattern.radius_px, "at most a quarter of the frame");
+    expects(options.pattern.pitch_px <= side / 2, "DotFinder", "pattern.pitch_px",
+            options.pattern.pitch_px, "at most half of the frame");
+    expects(options.where.empty() || options.where.size() == size_, "DotFinder", "where.rows",
+            static_cast<long long>(options.where.rows),
+            "equal to the rows of the free frame, and where.cols to its columns");
     if (!detail::is_picture(free_frame)) {
+      refusal_ = "no picture of 8 or 16 bit with one, three or four channels";
       return;
     }
-    Attempt best = options.pattern.pitch_px > 0 ? attempt(free_frame, options, known_look(options))
-                                                : search(free_frame, options);
-    if (best.dots.rows() == 0) {
-      return;
-    }
-    const DotPattern& given = options.pattern;
-    if (given.rows > 0) {
-      best.dots = detail::best_window(best.dots, given.rows, given.cols, given.middle_px);
-    }
-    if (count_present(best.dots) < detail::min_lattice_dots) {
-      return;
-    }
+    const Attempt best = options.pattern.pitch_px > 0
+                             ? attempt(free_frame, options, known_look(options))
+                             : search(free_frame, options);
     look_ = best.look;
     free_ = best.dots;
+    refusal_ = refusal_of(best);
+    if (refusal_.empty() && options.pattern.rows > 0) {
+      refusal_ = placed(options.pattern);
+    }
+    if (!refusal_.empty()) {
+      return;
+    }
     spots_.emplace(size_, look_, options.where);
-    tracker_.emplace(free_, places_of(free_, options.where), options.tracker);
+    print_.emplace(free_,
+                   [where = options.where, size = size_, r = 2 * look_.radius_px](const Place& at) {
+                     const cv::Rect2d view(r, r, size.width - 1 - 2 * r, size.height - 1 - 2 * r);
+                     return view.contains({at.x, at.y}) &&
+                            (where.empty() || where(cvRound(at.y), cvRound(at.x)) != 0);
+                   });
+    last_ = print_->free_px();
   }
 
-  /// Whether the free frame showed a grid.
-  bool ok() const { return tracker_.has_value(); }
+  /// Whether the free frame showed the grid.
+  bool ok() const { return refusal_.empty(); }
+  /// What it showed instead: "7 rows and 9 columns of dots, not 8 and 10".
+  const std::string& refusal() const { return refusal_; }
   Index rows() const { return free_.rows(); }
   Index cols() const { return free_.cols(); }
   /// The free pad's dots, px; NaN for a dot that was not seen.
   StridedView<const Point2<double>> free_px() const { return free_.view(); }
-  /// Properties of the print as found in the free frame.
+  /// Properties of the print as found in the free frame, also of one that is refused.
   DotPattern pattern() const {
     DotPattern found;
     found.rows = rows();
@@ -106,61 +169,102 @@ class DotFinder {
     return found;
   }
 
-  /// State of the free pad, as in the free frame.
-  State start() const {
-    State state;
-    if (ok()) {
-      state.dots = tracker_->start();
-    }
-    return state;
-  }
-
   /// The dots of the next frame, by their printed row and column; NaN for a lost dot. Takes
-  /// O(pixels + dots) time, and more after a jump of more than a third of a pitch. Small buffers
-  /// are allocated on each call; those of the frame's size stay in `state`. Use one state per
-  /// thread.
+  /// O(pixels + dots) time. Small buffers are allocated on each call; those of the frame's size are
+  /// kept.
   template <dot_grid Dots>
-  DotResult operator()(const cv::Mat& frame, Dots& dots_px, State& state) const {
+  DotResult operator()(const cv::Mat& frame, Dots&& dots_px) {
     if (!ok() || frame.size() != size_ || !detail::is_picture(frame)) {
       return {};
     }
-    return (*tracker_)(spots_->find(frame, state.workspace), dots_px, state.dots);
+    return label(spots_->find(frame, workspace_), dots_px);
+  }
+
+  /// The same from spots in any order that another program has found. Those that are not finite, or
+  /// farther out than 1e6 px, are ignored.
+  template <dot_grid Dots>
+  DotResult label(const std::vector<Point2<double>>& spots, Dots&& dots_px) {
+    DotResult result;
+    if (!ok() || fingerpad::rows(dots_px) != rows() || fingerpad::cols(dots_px) != cols()) {
+      return result;
+    }
+    std::vector<Place> good;
+    std::copy_if(spots.begin(), spots.end(), std::back_inserter(good),
+                 [](const Place& spot) { return is_plausible(spot); });
+    const detail::SpotMap map(good);
+    const auto answer = print_->labels_of(map, last_, max_off_);
+    Places found(rows(), cols(), detail::no_place());
+    result.status = answer.score <= 0  ? DotStatus::lost
+                    : answer.ambiguous ? DotStatus::ambiguous
+                                       : DotStatus::ok;
+    if (result.ok()) {
+      const Places all = places_of(answer.labels, map);
+      last_ = completed(all, print_->free_px());
+      constexpr Index beyond = detail::DotPrint::beyond;
+      found = window_of(all, beyond, beyond, rows(), cols(), detail::no_place());
+    }
+    result.spots = map.size();
+    result.expected = print_->count();
+    result.found = count_present(found);
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0; j < cols(); ++j) {
+        using Grid = std::remove_cvref_t<Dots>;
+        using Cell = cell_t<Grid>;
+        using Coordinate = std::remove_cvref_t<decltype(point_traits<Cell>::x(Cell()))>;
+        grid_traits<Grid>::at(dots_px, i, j) =
+            Cell{static_cast<Coordinate>(found(i, j).x), static_cast<Coordinate>(found(i, j).y)};
+      }
+    }
+    return result;
   }
 
  private:
   struct Attempt {
     detail::SpotLook look;
     detail::Places dots;
+    Index beside = 0;  ///< spots beside the grid, within two and a half pitches of a dot
     detail::TypicalSpot spot;
     double score = 0;
   };
 
-  static void check(const cv::Mat& frame, const DotFinderOptions& o) {
-    const char* const owner = "DotFinder";
-    const DotPattern& p = o.pattern;
-    const auto counted = [](Index n) { return n >= 2 && n <= 100; };
-    expects((p.rows == 0 && p.cols == 0) || counted(p.rows), owner, "pattern.rows",
-            static_cast<long long>(p.rows), "2 to 100, or 0 with cols = 0");
-    expects((p.rows == 0 && p.cols == 0) || counted(p.cols), owner, "pattern.cols",
-            static_cast<long long>(p.cols), "2 to 100, or 0 with rows = 0");
-    const double largest = (std::min)(frame.cols, frame.rows) / 4.0;
-    expects(p.radius_px == 0 || (p.radius_px >= 1 && p.radius_px <= largest), owner,
-            "pattern.radius_px", p.radius_px, "0, or 1 to a quarter of the frame");
-    expects(p.pitch_px == 0 ||
-                (p.pitch_px > 2 * p.radius_px && p.pitch_px <= 2 * largest && p.radius_px > 0),
-            owner, "pattern.pitch_px", p.pitch_px,
-            "0, or more than two radii and at most half of the frame");
-    expects(o.min_contrast > 0 && o.min_contrast < 1, owner, "min_contrast", o.min_contrast,
-            "in (0, 1)");
-    double sum = 0;
-    for (const double weight : o.color_weights) {
-      expects(weight >= 0 && is_finite(weight), owner, "color_weights", weight, ">= 0");
-      sum += weight;
+  /// Why the dots of an attempt are no print; "" if they are one.
+  static std::string refusal_of(const Attempt& one) {
+    if (one.dots.rows() == 0) {
+      return "no grid of 9 or more dots";
     }
-    expects(sum > 0, owner, "the sum of color_weights", sum, "> 0");
-    expects(o.where.empty() || o.where.size() == frame.size(), owner, "where.rows",
-            static_cast<long long>(o.where.rows),
-            "equal to the rows of the free frame, and where.cols to its columns");
+    const Index count = count_present(one.dots);
+    return 9 * one.beside > count
+               ? detail::print("%d dots in %d rows and %d columns, and %d beside them",
+                               static_cast<int>(count), static_cast<int>(one.dots.rows()),
+                               static_cast<int>(one.dots.cols()), static_cast<int>(one.beside))
+               : "";
+  }
+
+  /// Puts the dots at their place among the given rows and columns; why not if they have none.
+  std::string placed(const DotPattern& given) {
+    const Places flat = detail::flattened(free_);
+    const auto index = [](double number) { return static_cast<Index>(std::lround(number)); };
+    double top = 0, left = 0;
+    if (is_finite(given.middle_px)) {
+      const Place right = flat(0, 1) - flat(0, 0), down = flat(1, 0) - flat(0, 0);
+      const Place off = given.middle_px - flat(0, 0);
+      const double area = right.x * down.y - right.y * down.x;
+      top = (right.x * off.y - right.y * off.x) / area - static_cast<double>(given.rows - 1) / 2;
+      left = (off.x * down.y - off.y * down.x) / area - static_cast<double>(given.cols - 1) / 2;
+    }
+    const auto fits = [](double first, Index found, Index all, bool known) {
+      const double before = -std::round(first);  // rows or columns out of view
+      const double after = static_cast<double>(all - found) - before;
+      return known ? std::abs(first + before) < 0.25 && before >= 0 && after >= 0 : found == all;
+    };
+    const bool known = is_finite(given.middle_px);
+    if (!fits(top, rows(), given.rows, known) || !fits(left, cols(), given.cols, known)) {
+      return detail::print("%d rows and %d columns of dots, not %d and %d",
+                           static_cast<int>(rows()), static_cast<int>(cols()),
+                           static_cast<int>(given.rows), static_cast<int>(given.cols));
+    }
+    free_ = window_of(free_, index(top), index(left), given.rows, given.cols, detail::no_place());
+    return "";
   }
 
   static detail::SpotLook known_look(const DotFinderOptions& o) {
@@ -177,7 +281,9 @@ class DotFinder {
     const detail::SpotFinder finder(frame.size(), look, options.where);
     detail::SpotWorkspace workspace;
     const std::vector<Point2<double>> spots = finder.find(frame, workspace);
-    Attempt one{look, detail::lattice_of(spots), {}, 0};
+    Attempt one;
+    one.look = look;
+    one.dots = detail::lattice_of(spots);
     std::vector<Point2<double>> dots;
     for (const Point2<double>& dot : one.dots.cells()) {
       if (is_finite(dot)) {
@@ -185,6 +291,12 @@ class DotFinder {
       }
     }
     if (!dots.empty()) {
+      const detail::SpotMap map(dots);
+      const double pitch_px = detail::pitch_of(one.dots);
+      for (const Place& spot : spots) {
+        const auto hit = map.nearest(spot, 2.5 * pitch_px);
+        one.beside += hit.spot >= 0 && hit.distance_px > 0 ? 1 : 0;
+      }
       one.spot = finder.typical(frame, dots);
       const auto count = static_cast<double>(dots.size());
       one.score =
@@ -233,25 +345,15 @@ class DotFinder {
     return one;
   }
 
-  /// Expected positions of all dots on the free pad; NaN outside of `where`.
-  static detail::Places places_of(const detail::Places& dots,
-                                  const cv::Mat_<unsigned char>& where) {
-    detail::Places all = detail::extrapolated(dots);
-    for (Point2<double>& place : all.cells()) {
-      const auto x = static_cast<int>(std::lround(place.x));
-      const auto y = static_cast<int>(std::lround(place.y));
-      const bool inside = where.empty() || (x >= 0 && y >= 0 && x < where.cols && y < where.rows &&
-                                            where(y, x) != 0);
-      place = inside ? place : detail::no_place();
-    }
-    return all;
-  }
-
   cv::Size size_;
+  double max_off_;
+  std::string refusal_;
   detail::SpotLook look_;
-  detail::Places free_;
+  Places free_;
+  Places last_;  ///< where the dots were, also those around the print
   std::optional<detail::SpotFinder> spots_;
-  std::optional<DotTracker> tracker_;
+  std::optional<detail::DotPrint> print_;
+  detail::SpotWorkspace workspace_;
 };
 
 }  // namespace v0

@@ -8,8 +8,8 @@
 //
 //   auto green = channel<const unsigned char>(free_frame, 1);       // any image type
 //   DotFollower follower(green, finder.free_px(), {.radius_px = finder.pattern().radius_px});
-//   auto seen = follower(channel<const unsigned char>(frame, 1), dots);   // NaN where a dot is
-//   lost if (seen.status == DotFollowerStatus::lost && finder(frame, dots, state).ok()) {
+//   auto seen = follower(channel<const unsigned char>(frame, 1), dots);   // NaN: a lost dot
+//   if (seen.status == DotFollowerStatus::lost && finder(frame, dots).ok()) {
 //     seen = follower.restart(channel<const unsigned char>(frame, 1), dots);
 //   }
 #include <algorithm>

@@ -7,12 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
-#include <queue>
-#include <utility>
 #include <vector>
 
+#include "fingerpad/dots/detail/dot_labels.hpp"
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
@@ -20,6 +18,7 @@ inline namespace v0 {
 namespace detail {
 
 constexpr Index min_lattice_dots = 9;  // fewer may form a grid by chance
+constexpr double steps_alike = 0.2;    // as a fraction of their length
 
 /// Steps from a dot to the next one, along the rows and along the columns of a grid.
 struct LatticeSteps {
@@ -27,7 +26,7 @@ struct LatticeSteps {
   Place down{0, 0};
 };
 
-/// Steps from each spot to its nearest ones, reversed where needed to point right or down.
+/// Steps from each spot to its nearest ones.
 inline std::vector<Place> steps_between(const std::vector<Place>& spots) {
   constexpr std::size_t nearest = 6;
   std::vector<Place> steps, around;
@@ -43,9 +42,7 @@ inline std::vector<Place> steps_between(const std::vector<Place>& spots) {
     std::partial_sort(around.begin(), last, around.end(), [](const Place& a, const Place& b) {
       return squared_norm(a) < squared_norm(b);
     });
-    std::for_each(around.begin(), last, [&](const Place& step) {
-      steps.push_back(step.x + step.y > 0 ? step : -1 * step);
-    });
+    steps.insert(steps.end(), around.begin(), last);
   }
   return steps;
 }
@@ -55,8 +52,6 @@ struct CommonStep {
   Place step{0, 0};
   int count = 0;
 };
-
-constexpr double steps_alike = 0.2;  // as a fraction of their length
 
 /// The most frequent step among those that `allowed` accepts. Only some hundreds of candidates are
 /// tried: the steps of a grid are so frequent that one of them is among these.
@@ -105,65 +100,6 @@ inline std::optional<LatticeSteps> lattice_steps(const std::vector<Place>& spots
   return steps;
 }
 
-/// Assigns rows and columns to spots from a seed outward, the best fit first. The steps adapt to
-/// the bending of the grid.
-class LatticeGrowth {
- public:
-  using At = std::pair<int, int>;  // row and column from the seed
-
-  LatticeGrowth(const SpotMap& spots, const LatticeSteps& steps)
-      : spots_(spots), steps_(steps), taken_(static_cast<std::size_t>(spots.size()), 0) {}
-
-  /// The spot at each row and column, counted from the seed.
-  const std::map<At, int>& from(int seed) {
-    name({{0, 0}, seed, steps_, 0});
-    while (!open_.empty()) {
-      const Claim best = open_.top();
-      open_.pop();
-      if (named_.count(best.at) == 0 && taken_[static_cast<std::size_t>(best.spot)] == 0) {
-        name(best);
-      }
-    }
-    return named_;
-  }
-
- private:
-  struct Claim {
-    At at;
-    int spot;
-    LatticeSteps steps;
-    double misfit;
-    bool operator<(const Claim& other) const { return misfit > other.misfit; }
-  };
-
-  void name(const Claim& claim) {
-    named_[claim.at] = claim.spot;
-    taken_[static_cast<std::size_t>(claim.spot)] = 1;
-    for (const int sign : {1, -1}) {
-      look(claim, sign, &LatticeSteps::right, {claim.at.first, claim.at.second + sign});
-      look(claim, sign, &LatticeSteps::down, {claim.at.first + sign, claim.at.second});
-    }
-  }
-
-  void look(const Claim& from, int sign, Place LatticeSteps::*way, const At& at) {
-    constexpr double reach = 0.42;  // largest distance from the predicted position, in steps
-    LatticeSteps steps = from.steps;
-    Place& step = steps.*way;
-    const double length = norm(step);
-    const auto hit = spots_.nearest(spots_[from.spot] + sign * step, reach * length);
-    if (hit.spot >= 0) {
-      step = 0.5 * step + 0.5 * sign * (spots_[hit.spot] - spots_[from.spot]);
-      open_.push({at, hit.spot, steps, hit.distance_px / length});
-    }
-  }
-
-  const SpotMap& spots_;
-  LatticeSteps steps_;
-  std::vector<char> taken_;
-  std::map<At, int> named_;
-  std::priority_queue<Claim> open_;
-};
-
 /// The spot with the most neighbours on its four sides; of several, the one nearest to the middle.
 inline int lattice_seed(const SpotMap& spots, const LatticeSteps& steps) {
   Place middle{0, 0};
@@ -185,38 +121,33 @@ inline int lattice_seed(const SpotMap& spots, const LatticeSteps& steps) {
   return best;
 }
 
-/// The window of `size_rows` x `size_cols` from (top, left); NaN outside of the grid.
-inline Places window_of(
-    const Places& dots, Index top, Index left, Index size_rows, Index size_cols) {
-  Places window(size_rows, size_cols, no_place());
-  for (Index i = 0; i < size_rows; ++i) {
-    for (Index j = 0; j < size_cols; ++j) {
-      if (dots.contains(top + i, left + j)) {
-        window(i, j) = dots(top + i, left + j);
+/// The window that holds the dots, without outer rows and columns of fewer than two dots: a single
+/// dot may not belong to the grid.
+inline Places trimmed(const Places& dots) {
+  Index top = 0, left = 0, bottom = dots.rows(), right = dots.cols();
+  const auto few = [&](Index i0, Index i1, Index j0, Index j1) {
+    int count = 0;
+    for (Index i = i0; i < i1; ++i) {
+      for (Index j = j0; j < j1; ++j) {
+        count += is_finite(dots(i, j)) ? 1 : 0;
       }
     }
-  }
-  return window;
-}
-
-/// Removes outer rows and columns with fewer than two dots: a single dot may not belong to the
-/// grid.
-inline Places without_single_dots(Places dots) {
-  for (bool cut = true; cut && dots.rows() > 0 && dots.cols() > 0;) {
-    cut = false;
-    const Index r = dots.rows();
-    const Index c = dots.cols();
-    for (const Places& smaller :
-         {window_of(dots, 1, 0, r - 1, c), window_of(dots, 0, 0, r - 1, c),
-          window_of(dots, 0, 1, r, c - 1), window_of(dots, 0, 0, r, c - 1)}) {
-      if (count_present(dots) - count_present(smaller) < 2) {
-        dots = smaller;
-        cut = true;
-        break;
-      }
+    return count < 2;
+  };
+  while (top < bottom && left < right) {
+    if (few(top, top + 1, left, right)) {
+      ++top;
+    } else if (few(bottom - 1, bottom, left, right)) {
+      --bottom;
+    } else if (few(top, bottom, left, left + 1)) {
+      ++left;
+    } else if (few(top, bottom, right - 1, right)) {
+      --right;
+    } else {
+      break;
     }
   }
-  return dots;
+  return window_of(dots, top, left, bottom - top, right - left, no_place());
 }
 
 /// Median distance of neighbours in a row or column; 0 if there are none.
@@ -224,12 +155,12 @@ inline double pitch_of(const Places& dots) {
   std::vector<double> lengths;
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j < dots.cols(); ++j) {
-      for_each_neighbour<4>(dots, i, j, [&](Index, Index, const Place& other) {
-        const double length = norm(other - dots(i, j));
-        if (is_finite(length)) {
-          lengths.push_back(length);
+      for (const Place& next : {dots.contains(i + 1, j) ? dots(i + 1, j) : no_place(),
+                                dots.contains(i, j + 1) ? dots(i, j + 1) : no_place()}) {
+        if (is_finite(next - dots(i, j))) {
+          lengths.push_back(norm(next - dots(i, j)));
         }
-      });
+      }
     }
   }
   return lengths.empty() ? 0 : median_of(lengths.begin(), lengths.end());
@@ -239,19 +170,16 @@ inline double pitch_of(const Places& dots) {
 /// rejects random spots, which can be given rows and columns but are not regular.
 inline double unevenness(const Places& dots) {
   std::vector<double> off;
-  const auto add = [&](const Place& before, const Place& at, const Place& after) {
-    const Place bend = before / 2 + after / 2 - at;
-    if (is_finite(bend)) {
-      off.push_back(norm(bend));
-    }
-  };
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j < dots.cols(); ++j) {
-      if (dots.contains(i - 1, j) && dots.contains(i + 1, j)) {
-        add(dots(i - 1, j), dots(i, j), dots(i + 1, j));
-      }
-      if (dots.contains(i, j - 1) && dots.contains(i, j + 1)) {
-        add(dots(i, j - 1), dots(i, j), dots(i, j + 1));
+      for (const auto& [down, right] : {std::pair<Index, Index>{1, 0}, {0, 1}}) {
+        if (dots.contains(i - down, j - right) && dots.contains(i + down, j + right)) {
+          const Place bend =
+              0.5 * (dots(i - down, j - right) + dots(i + down, j + right)) - dots(i, j);
+          if (is_finite(bend)) {
+            off.push_back(norm(bend));
+          }
+        }
       }
     }
   }
@@ -263,6 +191,7 @@ inline double unevenness(const Places& dots) {
 inline Places lattice_of(const std::vector<Place>& spots) {
   constexpr std::size_t max_spots = 1200;  // more are image noise
   constexpr double max_uneven = 0.15;
+  constexpr double max_extent = 100;  // rows or columns to each side
   if (spots.size() < static_cast<std::size_t>(min_lattice_dots) || spots.size() > max_spots) {
     return {};
   }
@@ -271,64 +200,35 @@ inline Places lattice_of(const std::vector<Place>& spots) {
     return {};
   }
   const SpotMap map(spots);
-  LatticeGrowth growth(map, *steps);
-  const auto& named = growth.from(lattice_seed(map, *steps));
-  LatticeGrowth::At first(0, 0), last(0, 0);
-  for (const auto& [at, spot] : named) {
-    first = {(std::min)(first.first, at.first), (std::min)(first.second, at.second)};
-    last = {(std::max)(last.first, at.first), (std::max)(last.second, at.second)};
+  const Place seed = map[lattice_seed(map, *steps)];
+  const auto& [right, down] = *steps;
+  const double area = right.x * down.y - right.y * down.x;
+  double up = 0, below = 0, before = 0, after = 0;
+  for (const Place& spot : spots) {
+    const Place off = spot - seed;
+    const double row = (right.x * off.y - right.y * off.x) / area;
+    const double col = (off.x * down.y - off.y * down.x) / area;
+    up = (std::max)(up, -row);
+    below = (std::max)(below, row);
+    before = (std::max)(before, -col);
+    after = (std::max)(after, col);
   }
-  Places dots(last.first - first.first + 1, last.second - first.second + 1, no_place());
-  for (const auto& [at, spot] : named) {
-    dots(at.first - first.first, at.second - first.second) = map[spot];
+  // a bent grid reaches further
+  const auto extent = [&](double side) {
+    return static_cast<Index>((std::min)(1.25 * side + 2, max_extent));
+  };
+  const DotIndex first = {extent(up), extent(before)};
+  Places regular(first.row + 1 + extent(below), first.col + 1 + extent(after), no_place());
+  for (Index i = 0; i < regular.rows(); ++i) {
+    for (Index j = 0; j < regular.cols(); ++j) {
+      regular(i, j) = seed + static_cast<double>(i - first.row) * down +
+                      static_cast<double>(j - first.col) * right;
+    }
   }
-  dots = without_single_dots(dots);
+  const Places dots = trimmed(places_of(DotGrowth(regular, map).from(first, Place{0, 0}), map));
   const bool is_grid = dots.rows() > 1 && dots.cols() > 1 &&
                        count_present(dots) >= min_lattice_dots && unevenness(dots) <= max_uneven;
   return is_grid ? dots : Places();
-}
-
-/// The window of rows x cols that holds the most dots; it may extend beyond the grid. Of several
-/// such windows, the one with the middle nearest to `middle_px` is taken or, if that is NaN, the
-/// one nearest to the first row and column.
-inline Places best_window(const Places& dots, Index rows, Index cols, const Place& middle_px) {
-  const Places flat = flattened(dots);  // of at least two rows and columns
-  const Place down = flat(1, 0) - flat(0, 0);
-  const Place right = flat(0, 1) - flat(0, 0);
-  const auto count_in = [&](Index top, Index left) {
-    Index count = 0;
-    for (Index i = (std::max)(top, Index{0}); i < (std::min)(top + rows, dots.rows()); ++i) {
-      for (Index j = (std::max)(left, Index{0}); j < (std::min)(left + cols, dots.cols()); ++j) {
-        count += is_finite(dots(i, j)) ? 1 : 0;
-      }
-    }
-    return count;
-  };
-  const auto from_middle = [&](Index top, Index left) {
-    const double row = static_cast<double>(top) + static_cast<double>(rows - 1) / 2;
-    const double col = static_cast<double>(left) + static_cast<double>(cols - 1) / 2;
-    return is_finite(middle_px) ? norm(flat(0, 0) + row * down + col * right - middle_px)
-                                : static_cast<double>(std::abs(top) + std::abs(left));
-  };
-  DotIndex best;
-  Index most = -1;
-  double nearest = 0;
-  const Index spare_rows = dots.rows() - rows;
-  const Index spare_cols = dots.cols() - cols;
-  for (Index top = (std::min)(Index{0}, spare_rows); top <= (std::max)(Index{0}, spare_rows);
-       ++top) {
-    for (Index left = (std::min)(Index{0}, spare_cols); left <= (std::max)(Index{0}, spare_cols);
-         ++left) {
-      const Index count = count_in(top, left);
-      const double distance = from_middle(top, left);
-      if (count > most || (count == most && distance < nearest)) {
-        most = count;
-        nearest = distance;
-        best = {top, left};
-      }
-    }
-  }
-  return window_of(dots, best.row, best.col, rows, cols);
 }
 
 }  // namespace detail

@@ -27,31 +27,6 @@ constexpr Place no_place() {
   return {not_a_number<double>(), not_a_number<double>()};
 }
 
-/// Calls visit(row, col, point) for each neighbour of (row, col) that is present, and returns their
-/// number. 4 neighbours share a side with the dot, 8 a side or a corner. O(1), no allocation.
-template <int Neighbours = 8, dot_grid G, class Visit>
-constexpr int for_each_neighbour(const G& dots, Index row, Index col, Visit&& visit) {
-  static_assert(Neighbours == 4 || Neighbours == 8,
-                "a dot has 4 or 8 neighbours: for_each_neighbour<4> or for_each_neighbour<8>");
-  int found = 0;
-  for (Index i = row - 1; i <= row + 1; ++i) {
-    for (Index j = col - 1; j <= col + 1; ++j) {
-      const bool inside = i >= 0 && i < rows(dots) && j >= 0 && j < cols(dots);
-      const bool self = i == row && j == col;
-      const bool corner = i != row && j != col;
-      if (!inside || self || (Neighbours == 4 && corner)) {
-        continue;
-      }
-      const cell_t<G> p = grid_traits<G>::at(dots, i, j);
-      if (is_present(p)) {
-        visit(i, j, p);
-        ++found;
-      }
-    }
-  }
-  return found;
-}
-
 /// A grid that owns its cells.
 template <class T>
 class Table {
@@ -225,9 +200,11 @@ inline Table<double> spacings_px(const Places& dots) {
   for (Index i = 0; i < dots.rows(); ++i) {
     for (Index j = 0; j < dots.cols(); ++j) {
       double nearest = std::numeric_limits<double>::infinity();
-      for_each_neighbour<4>(dots, i, j, [&](Index, Index, const Place& other) {
-        nearest = std::fmin(nearest, norm(other - dots(i, j)));
-      });
+      for (const auto& [down, right] : {std::pair<Index, Index>{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        if (dots.contains(i + down, j + right)) {
+          nearest = std::fmin(nearest, norm(dots(i + down, j + right) - dots(i, j)));
+        }
+      }
       if (is_finite(nearest) && nearest > 0) {
         spacing(i, j) = nearest;
         sum += nearest;
@@ -277,26 +254,44 @@ inline Places flattened(const Places& dots) {
   return flat;
 }
 
-/// Fills in missing dots, outward from the known ones. Their deviation from the regular grid
-/// continues that of their neighbours.
-inline Places extrapolated(Places dots) {
-  const Places flat = flattened(dots);
+/// Fills in missing dots, outward from the known ones: their deviation from `base` continues that
+/// of their neighbours.
+inline Places completed(Places dots, const Places& base) {
+  const Table<double> spacing_px = spacings_px(base);
   for (bool grown = true; grown;) {
     grown = false;
     const Places known = dots;
     for (Index i = 0; i < dots.rows(); ++i) {
       for (Index j = 0; j < dots.cols(); ++j) {
         if (!is_finite(known(i, j))) {
-          const double pitch_px = norm(flat(1 % dots.rows(), 1 % dots.cols()) - flat(0, 0));
-          dots(i, j) = flat(i, j) +
-                       by_neighbours(dots.rows(), dots.cols(), i, j, pitch_px,
-                                     [&](Index r, Index c) { return known(r, c) - flat(r, c); });
+          dots(i, j) = base(i, j) +
+                       by_neighbours(dots.rows(), dots.cols(), i, j, spacing_px(i, j),
+                                     [&](Index r, Index c) { return known(r, c) - base(r, c); });
           grown = grown || is_finite(dots(i, j));
         }
       }
     }
   }
   return dots;
+}
+/// The same from the regular grid.
+inline Places completed(const Places& dots) {
+  return completed(dots, flattened(dots));
+}
+
+/// The window of rows x cols from (top, left); `none` outside of the table.
+template <class T>
+Table<T> window_of(
+    const Table<T>& all, Index top, Index left, Index rows, Index cols, const T& none) {
+  Table<T> window(rows, cols, none);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      if (all.contains(top + i, left + j)) {
+        window(i, j) = all(top + i, left + j);
+      }
+    }
+  }
+  return window;
 }
 
 }  // namespace detail

@@ -1,0 +1,462 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Gives the spots of a frame the rows and columns of a print. Labels grow from a block of 3 x 3
+// dots to their neighbours: the motion of labelled dots predicts that of the dots beside them. What
+// has grown from one block is a piece of one grid, but its rows and columns may be off by a whole
+// number, so growth continues beyond the border of the print. A spot where nothing is printed tells
+// that the labels are off.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "fingerpad/dots/detail/dot_table.hpp"
+
+namespace fingerpad {
+inline namespace v0 {
+namespace detail {
+
+/// Index of the spot of each dot; -1: none.
+using Labels = Table<int>;
+
+inline Index number_of(const Labels& labels) {
+  return static_cast<Index>(std::count_if(labels.cells().begin(), labels.cells().end(),
+                                          [](int label) { return label >= 0; }));
+}
+
+/// Positions of the labelled dots; NaN without a label.
+inline Places places_of(const Labels& labels, const SpotMap& spots) {
+  Places dots(labels.rows(), labels.cols(), no_place());
+  for (std::size_t k = 0; k < labels.cells().size(); ++k) {
+    const int label = labels.cells()[k];
+    dots.cells()[k] = label >= 0 ? spots[label] : no_place();
+  }
+  return dots;
+}
+
+/// Labels spots from the approximate places of dots, NaN where a dot cannot be. Places and spots
+/// must outlive it.
+class DotGrowth {
+ public:
+  DotGrowth(const Places& base, const SpotMap& spots)
+      : base_(base), spacing_px_(spacings_px(base)), spots_(spots) {}
+
+  /// Labels of the block around `seed` moved by `move`, and of all dots reached from it.
+  Labels from(DotIndex seed, const Place& move) const {
+    Labels labels(base_.rows(), base_.cols(), -1);
+    for (Index i = seed.row - 1; i <= seed.row + 1; ++i) {
+      for (Index j = seed.col - 1; j <= seed.col + 1; ++j) {
+        if (base_.contains(i, j)) {
+          labels(i, j) = spots_.nearest(base_(i, j) + move, gate * spacing_px_(i, j)).spot;
+        }
+      }
+    }
+    settle(labels);
+    return labels;
+  }
+
+  /// Drops labels that do not fit their neighbours and grows the others.
+  void settle(Labels& labels) const {
+    constexpr int max_rounds = 5;
+    drop_misfits(labels, largest_misfit);
+    // Dropped labels may grow again, and better, from the remaining ones.
+    for (int round = 0; round < max_rounds && grow(labels); ++round) {
+      drop_misfits(labels, largest_misfit);
+    }
+    // What has grown first had few neighbours to predict it.
+    claim(labels, least_neighbours, true);
+    drop_misfits(labels, largest_misfit);
+  }
+
+  /// Removes labels that fit much worse than most, and by more than `max_off` of the spacing: half
+  /// a dot beside a shadow, or the shadow itself.
+  void drop_strangers(Labels& labels, double max_off) const {
+    constexpr double strange = 8;  // times the median misfit
+    const Table<double> misfits = misfits_of(labels);
+    std::vector<double> sorted;
+    for (std::size_t k = 0; k < misfits.cells().size(); ++k) {
+      if (labels.cells()[k] >= 0) {
+        sorted.push_back(misfits.cells()[k]);
+      }
+    }
+    if (sorted.empty()) {
+      return;
+    }
+    const double limit = std::fmax(max_off, strange * median_of(sorted.begin(), sorted.end()));
+    for (std::size_t k = 0; k < misfits.cells().size(); ++k) {
+      labels.cells()[k] = misfits.cells()[k] > limit ? -1 : labels.cells()[k];
+    }
+  }
+
+  /// Removes labels, the worst first, until none is off the position predicted by its neighbours by
+  /// more than `max_misfit` of the spacing.
+  void drop_misfits(Labels& labels, double max_misfit) const {
+    constexpr Index reach = Neighbours::reach;
+    Table<double> misfits = misfits_of(labels);
+    while (true) {
+      const auto worst = std::max_element(misfits.cells().begin(), misfits.cells().end());
+      if (worst == misfits.cells().end() || *worst <= max_misfit) {
+        return;
+      }
+      const Index at = worst - misfits.cells().begin();
+      const Index row = at / labels.cols();
+      const Index col = at % labels.cols();
+      labels(row, col) = -1;
+      for (Index i = row - reach; i <= row + reach; ++i) {
+        for (Index j = col - reach; j <= col + reach; ++j) {
+          if (labels.contains(i, j)) {
+            misfits(i, j) = misfit(labels, i, j);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr int least_neighbours = 2;
+  // As fractions of the spacing between dots:
+  static constexpr double gate = 0.35;           // spot to predicted position, while growing
+  static constexpr double largest_misfit = 0.3;  // spot to predicted position, when grown
+
+  /// Position of a dot that moves like its neighbours.
+  Place expected(const Labels& labels, Index row, Index col) const {
+    return base_(row, col) + by_neighbours(labels.rows(), labels.cols(), row, col,
+                                           spacing_px_(row, col), [&](Index i, Index j) {
+                                             return labels(i, j) >= 0
+                                                        ? spots_[labels(i, j)] - base_(i, j)
+                                                        : no_place();
+                                           });
+  }
+
+  double misfit(const Labels& labels, Index row, Index col) const {
+    if (labels(row, col) < 0) {
+      return 0;
+    }
+    const Place where = expected(labels, row, col);
+    return is_finite(where) ? norm(spots_[labels(row, col)] - where) / spacing_px_(row, col)
+                            : std::numeric_limits<double>::infinity();
+  }
+
+  Table<double> misfits_of(const Labels& labels) const {
+    Table<double> misfits(labels.rows(), labels.cols(), 0.0);
+    for (Index i = 0; i < labels.rows(); ++i) {
+      for (Index j = 0; j < labels.cols(); ++j) {
+        misfits(i, j) = misfit(labels, i, j);
+      }
+    }
+    return misfits;
+  }
+
+  /// Adds labels, first for dots with many labelled neighbours: these are predicted best. False if
+  /// nothing was added.
+  bool grow(Labels& labels) const {
+    constexpr int most = 3;
+    bool any = false;
+    for (int wanted = most; wanted >= least_neighbours;) {
+      const bool grown = claim(labels, wanted, false);
+      any = any || grown;
+      wanted = grown ? most : wanted - 1;
+    }
+    return any;
+  }
+
+  /// Labels the dots that have some labelled neighbours, the best predicted first: those without a
+  /// label, or all anew. False if no label was given.
+  bool claim(Labels& labels, int wanted, bool anew) const {
+    struct Claim {
+      double distance_px;
+      Index row, col;
+      int spot;
+    };
+    std::vector<Claim> claims;
+    std::vector<char> taken(static_cast<std::size_t>(spots_.size()), 0);
+    for (const int label : labels.cells()) {
+      if (label >= 0 && !anew) {
+        taken[static_cast<std::size_t>(label)] = 1;
+      }
+    }
+    for (Index i = 0; i < labels.rows(); ++i) {
+      for (Index j = 0; j < labels.cols(); ++j) {
+        if ((anew || labels(i, j) < 0) && is_finite(base_(i, j)) &&
+            neighbours(labels, i, j) >= wanted) {
+          const auto hit = spots_.nearest(expected(labels, i, j), gate * spacing_px_(i, j));
+          if (hit.spot >= 0) {
+            claims.push_back({hit.distance_px, i, j, hit.spot});
+          }
+        }
+      }
+    }
+    std::sort(claims.begin(), claims.end(),
+              [](const Claim& a, const Claim& b) { return a.distance_px < b.distance_px; });
+    if (anew) {
+      labels = Labels(labels.rows(), labels.cols(), -1);
+    }
+    bool grown = false;
+    for (const Claim& claim : claims) {
+      char& is_taken = taken[static_cast<std::size_t>(claim.spot)];
+      if (is_taken == 0) {
+        labels(claim.row, claim.col) = claim.spot;
+        is_taken = 1;
+        grown = true;
+      }
+    }
+    return grown;
+  }
+
+  static int neighbours(const Labels& labels, Index row, Index col) {
+    int count = 0;
+    for (Index i = row - 1; i <= row + 1; ++i) {
+      for (Index j = col - 1; j <= col + 1; ++j) {
+        count += labels.contains(i, j) && labels(i, j) >= 0 ? 1 : 0;
+      }
+    }
+    return count;
+  }
+
+  const Places& base_;
+  Table<double> spacing_px_;
+  const SpotMap& spots_;
+};
+
+/// A print in view, and the places around it.
+class DotPrint {
+ public:
+  static constexpr Index beyond = 3;  ///< rows and columns of places on each side of the print
+  using InView = std::function<bool(const Place&)>;
+
+  /// `free_px`: the dots of the free pad, NaN where none was seen. `in_view`: whether a dot at this
+  /// place would be seen.
+  DotPrint(const Places& free_px, const InView& in_view)
+      : in_view_(in_view),
+        free_(completed(window_of(free_px,
+                                  -beyond,
+                                  -beyond,
+                                  free_px.rows() + 2 * beyond,
+                                  free_px.cols() + 2 * beyond,
+                                  no_place()))),
+        kind_(free_.rows(), free_.cols(), printed) {
+    Place middle{0, 0};
+    for (Index i = 0; i < free_.rows(); ++i) {
+      for (Index j = 0; j < free_.cols(); ++j) {
+        if (free_px.contains(i - beyond, j - beyond) &&
+            is_finite(free_px(i - beyond, j - beyond))) {
+          ++count_;
+          middle += free_(i, j);
+        } else {
+          kind_(i, j) = in_view(free_(i, j)) ? blank : unknown;
+        }
+      }
+    }
+    choose_seeds(middle / static_cast<double>(count_));
+    for (Index down = -2 * beyond; down <= 2 * beyond; ++down) {
+      for (Index right = -2 * beyond; right <= 2 * beyond; ++right) {
+        exposed_(down + 2 * beyond, right + 2 * beyond) =
+            count([&](Index i, Index j) { return kind_(i, j) == printed; }, blank, {down, right});
+      }
+    }
+  }
+
+  /// Where the dots of the free pad are, and those that would lie around them.
+  const Places& free_px() const { return free_; }
+  Index count() const { return count_; }
+
+  struct Answer {
+    Labels labels;           ///< of all places
+    bool ambiguous = false;  ///< rows or columns may be off by a whole number
+    Index score = 0;         ///< labels, less those where nothing is printed
+  };
+
+  /// Labels of spots, from where the dots were `last`; without a score if too few fit.
+  Answer labels_of(const SpotMap& spots, const Places& last, double max_off) const {
+    const auto most = static_cast<double>((std::min)(count_, static_cast<Index>(spots.size())));
+    std::vector<Answer> guesses;
+    Answer best;
+    bool done = false;
+    for (const Places* base : {&last, &free_}) {
+      const DotGrowth growth(*base, spots);
+      for (std::size_t k = 0; k < seeds_.size() && !done; ++k) {
+        guesses.push_back(grown(growth, seeds_[k], spots, *base));
+        const bool better = guesses.back().score > best.score;
+        best = better ? guesses.back() : best;
+        done = static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
+      }
+    }
+    if (best.score <= 0) {
+      return {};
+    }
+    for (const Answer& other : guesses) {
+      if (static_cast<double>(other.score) >= nearly_as_good * static_cast<double>(best.score)) {
+        drop_where_other(best.labels, other.labels);
+      }
+    }
+    DotGrowth(last, spots).drop_strangers(best.labels, max_off);
+    return static_cast<double>(number_of(best.labels)) >= min_explained * most ? best : Answer{};
+  }
+
+ private:
+  enum Kind : std::uint8_t {
+    printed,  ///< a dot of the free pad
+    blank,    ///< nothing was there
+    unknown,  ///< not in view
+  };
+  // Shares of the dots that have a label:
+  static constexpr double nearly_all = 0.96;       // the first guess is taken
+  static constexpr double min_explained = 0.9;     // below this, all dots are lost
+  static constexpr double nearly_as_good = 0.985;  // of the best score
+  static constexpr Index evidence = 3;             // as many dots against it refute a labelling
+
+  /// Middles of blocks that are mostly printed: the one nearest to the middle of the print, and
+  /// those farthest from it to four sides.
+  void choose_seeds(const Place& middle) {
+    std::vector<DotIndex> blocks;
+    for (Index i = 1; i + 1 < free_.rows(); ++i) {
+      for (Index j = 1; j + 1 < free_.cols(); ++j) {
+        Index full = 0;
+        for (Index k = 0; k < 9; ++k) {
+          full += kind_(i + k / 3 - 1, j + k % 3 - 1) == printed ? 1 : 0;
+        }
+        if (full >= 6 && kind_(i, j) == printed) {
+          blocks.push_back({i, j});
+        }
+      }
+    }
+    const auto add_least = [&](const auto& score) {
+      const auto least =
+          std::min_element(blocks.begin(), blocks.end(), [&](const DotIndex& a, const DotIndex& b) {
+            return score(free_(a.row, a.col) - middle) < score(free_(b.row, b.col) - middle);
+          });
+      if (least != blocks.end()) {
+        seeds_.push_back(*least);
+      }
+    };
+    add_least([](const Place& off) { return squared_norm(off); });
+    for (const Place& way : {Place{1, 1}, Place{-1, -1}, Place{1, -1}, Place{-1, 1}}) {
+      add_least([&](const Place& off) { return dot(way, off); });
+    }
+  }
+
+  /// Labels grown from the spot nearest to a seed, with the rows and columns that leave the fewest
+  /// spots where nothing is printed.
+  Answer grown(const DotGrowth& growth,
+               const DotIndex& seed,
+               const SpotMap& spots,
+               const Places& base) const {
+    const Place& from = base(seed.row, seed.col);
+    const auto hit = spots.nearest(from, std::numeric_limits<double>::infinity());
+    Answer answer;
+    if (hit.spot < 0) {
+      return answer;
+    }
+    const Place move = spots[hit.spot] - from;
+    Labels& labels = answer.labels = growth.from(seed, move);
+    Labels sure = labels;  // few specks lie so well where a dot would be
+    growth.drop_misfits(sure, 0.15);
+    std::vector<DotIndex> shifts;  // the smallest first
+    for (Index down = -beyond; down <= beyond; ++down) {
+      for (Index right = -beyond; right <= beyond; ++right) {
+        shifts.push_back({down, right});
+      }
+    }
+    std::sort(shifts.begin(), shifts.end(), [](const DotIndex& a, const DotIndex& b) {
+      return a.row * a.row + a.col * a.col < b.row * b.row + b.col * b.col;
+    });
+    std::vector<Index> wrong;
+    for (const DotIndex& shift : shifts) {
+      wrong.push_back(count(sure, blank, shift));
+    }
+    const Index least = *std::min_element(wrong.begin(), wrong.end());
+    std::optional<DotIndex> by;
+    for (std::size_t k = 0; k < shifts.size(); ++k) {
+      if (wrong[k] >= least + evidence) {
+        continue;
+      }
+      if (!by) {
+        by = shifts[k];
+      } else {
+        answer.ambiguous = answer.ambiguous || is_rival(shifts[k], *by, sure, base, move);
+      }
+    }
+    answer.score = -count(sure, blank, *by);
+    labels = window_of(labels, -by->row, -by->col, labels.rows(), labels.cols(), -1);
+    Places known = base;
+    for (std::size_t k = 0; k < known.cells().size(); ++k) {
+      if (kind_.cells()[k] == blank) {
+        known.cells()[k] = no_place();
+        labels.cells()[k] = -1;
+      }
+    }
+    DotGrowth(known, spots).settle(labels);
+    answer.score += number_of(labels);
+    return answer;
+  }
+
+  /// Whether another shift is as possible as the smallest one: a jump of the print would have shown
+  /// dots where nothing is printed, or the other shift misses fewer dots.
+  bool is_rival(const DotIndex& other,
+                const DotIndex& shift,
+                const Labels& labels,
+                const Places& base,
+                const Place& move) const {
+    return exposed_(other.row - shift.row + 2 * beyond, other.col - shift.col + 2 * beyond) >=
+               evidence ||
+           missing(labels, other, base, move) + evidence <= missing(labels, shift, base, move);
+  }
+
+  /// How many of some places fall on places of a kind if all are moved by rows and columns.
+  template <class IsCounted>
+  Index count(const IsCounted& is_counted, Kind kind, const DotIndex& by) const {
+    Index number = 0;
+    for (Index i = 0; i < kind_.rows(); ++i) {
+      for (Index j = 0; j < kind_.cols(); ++j) {
+        const Index row = std::clamp(i + by.row, Index{0}, kind_.rows() - 1);
+        const Index col = std::clamp(j + by.col, Index{0}, kind_.cols() - 1);
+        number += kind_(row, col) == kind && is_counted(i, j) ? 1 : 0;
+      }
+    }
+    return number;
+  }
+
+  /// How many printed dots have no label then, although they would be in view.
+  Index missing(const Labels& labels,
+                const DotIndex& by,
+                const Places& base,
+                const Place& move) const {
+    Index number = 0;
+    for (Index i = 0; i < labels.rows(); ++i) {
+      for (Index j = 0; j < labels.cols(); ++j) {
+        const bool is_printed =
+            kind_.contains(i + by.row, j + by.col) && kind_(i + by.row, j + by.col) == printed;
+        number += is_printed && labels(i, j) < 0 && in_view_(base(i, j) + move) ? 1 : 0;
+      }
+    }
+    return number;
+  }
+
+  Index count(const Labels& labels, Kind kind, const DotIndex& by) const {
+    return count([&](Index i, Index j) { return labels(i, j) >= 0; }, kind, by);
+  }
+
+  static void drop_where_other(Labels& labels, const Labels& others) {
+    for (std::size_t k = 0; k < others.cells().size(); ++k) {
+      int& label = labels.cells()[k];
+      const int other = others.cells()[k];
+      label = label >= 0 && other >= 0 && label != other ? -1 : label;
+    }
+  }
+
+  InView in_view_;
+  Places free_;
+  Table<Kind> kind_;
+  Index count_ = 0;
+  std::vector<DotIndex> seeds_;
+  /// Dots that would lie where nothing is printed, by a shift of -2 beyond to 2 beyond.
+  Table<Index> exposed_{4 * beyond + 1, 4 * beyond + 1, 0};
+};
+
+}  // namespace detail
+}  // namespace v0
+}  // namespace fingerpad
