@@ -328,21 +328,22 @@ class DotFollower {
       at(k).visited = at(k).found = false;
       at(k).news = {0, 0};
     }
-    // The lost are tried again beside those found; from the third round on with a wide look.
+    // The lost are tried again beside those found, with a wide look if they are more than in the
+    // last frame.
     constexpr int rounds = 5;
     if (noise_ == 0) {
       learn_noise(image);
     }
-    bool lost = true;
-    for (int round = 0; round < rounds && lost; ++round) {
-      lost = false;
+    auto lost = Index(order_.size());
+    for (int round = 0; round < rounds && lost > (round < 2 ? 0 : lost_); ++round) {
+      lost = 0;
       for (const Index k : order_) {
         Mark& m = at(k);
         if (!m.found) {
           m.place = m.place - m.news;
           m.visited = false;
           m.news = neighbours_news(k);
-          lost = !locate(image, k, round > 1) || lost;
+          lost += locate(image, k, round > 1) ? 0 : 1;
         }
       }
     }
@@ -509,6 +510,7 @@ class DotFollower {
                       double(strange) <= max_strange * double(beyond_.size());
     if (good) {
       keep_noise();
+      lost_ = result.expected - result.found;
     }
     result.status = good ? DotFollowerStatus::ok : DotFollowerStatus::lost;
     for (const Index k : order_) {
@@ -534,6 +536,7 @@ class DotFollower {
     return result;
   }
 
+  Index lost_ = 0;    ///< dots, in the last good frame
   double noise_ = 0;  ///< residuals of the frames to that of the free pad's picture; 0: unknown
   static constexpr double max_off = 0.45;     ///< pitches
   static constexpr double bias_px = 0.01;     ///< rms of the centers in pictures without noise
