@@ -520,7 +520,7 @@ TEST_CASE("mistakes: the rim", "[mistakes]") {
       {"none", rim(1, 1), "ok"},
       {"one of four pressures absolute", rim(1, 1, 18.735, 4, 1 + 0.1 / 0.012), "inflated cap"},
       {"one of four pressures of another frame", rim(1, 1, 18.735, 4, 1.4), "inflated cap"},
-      {"apex in m", rim(1, 1e-3), "inflated cap"},
+      {"apex in m", rim(1, 1e-3), "must be"},
       {"apex in um", rim(1, 1e3), "must be"},
       {"z into the plate", rim(1, -1), "must be"},
       {"diameter for the radius", rim(1, 1, 2 * 18.735), "inflated cap"},

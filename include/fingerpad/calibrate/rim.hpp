@@ -107,8 +107,9 @@ inline RimFit fit_rim(const StressFreeCap<double>& cap,
   const FreeApex& high = *std::max_element(
       apexes.begin(), apexes.end(),
       [](const FreeApex& a, const FreeApex& b) { return a.pressure_mpa < b.pressure_mpa; });
-  expects(high.apex_mm < 2 * cap.base_radius_mm, owner, "apex_mm", high.apex_mm,
-          "below twice the base radius, in mm");
+  const bool in_mm = high.apex_mm < 2 * cap.base_radius_mm && high.apex_mm > cap.height_mm / 2;
+  expects(in_mm, owner, "apex_mm", high.apex_mm,
+          "between half the stress-free height and twice the base radius, in mm");
   Unknowns x = given;
   double low = std::log(high.pressure_mpa * cap.base_radius_mm / 20), top = low + 9;
   for (int k = 0; k < 60; ++k) {
@@ -117,6 +118,7 @@ inline RimFit fit_rim(const StressFreeCap<double>& cap,
   }
 
   RimFit fit;
+  fit.cause = cause::no_such_cap;
   Eigen::Matrix4d normal;
   double sum = 0, weighed = 0;
   for (int iteration = 0; iteration < 20; ++iteration) {
