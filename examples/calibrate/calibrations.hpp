@@ -77,6 +77,11 @@ Outcome force(const Path& contacts, const Path& gauge);
 /// The noise of taxels, from taxels.csv of an array at rest.
 Outcome taxels(const Path& recording);
 
+/// Everything that `folder` has pictures of: camera, shape, absorption, contact and rim, with what
+/// about.json knows without measuring. Writes sensor.json to the folder and prints one table; what
+/// is missing or refused is named and left out. Whether all is there.
+bool all(const Path& folder);
+
 /// Writes recordings of a simulated sensor to practise the calibrations on.
 void write_practice(const Path& folder);
 

@@ -282,33 +282,51 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
 }
 
 Outcome contact(const Path& recording, const Path& sensor_file) {
-  const replay::Sensor sensor =
-      known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
+  replay::Sensor sensor = known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
   const cv::Mat reference =
       replay::read_colour_image(recording / sensor.reference_frame, sensor.pictures);
   const DepthMap free_mm = replay::read_depth_image(recording / sensor.reference_depth);
   const std::vector<cv::Mat> frames = read_pictures(recording / "free", sensor.pictures);
-  DepthMeter meter(sensor, reference, free_mm);
-  std::vector<DepthMap> depths_mm;
   for (const cv::Mat& frame : frames) {
     if (frame.size() != reference.size()) {
       replay::fail(recording / "free", "the frames must have the size of the reference");
     }
-    depths_mm.push_back(meter(frame));
   }
-  const DepthMap& last = depths_mm.back();
-  const auto pad = fit_contact_threshold(sensor.camera, depths_mm);
+  // noise may set the threshold, and not the edge: then a wider window averages it away
+  DepthMap last;
+  fingerpad::ThresholdFit<double> pad;
+  const int most_px = 2 * window_px(sensor);
+  for (int width = window_px(sensor); width <= most_px; width += width / 8 * 2) {
+    sensor.smoothing_px = width;
+    DepthMeter meter(sensor, reference, free_mm);
+    std::vector<DepthMap> depths_mm;
+    for (const cv::Mat& frame : frames) {
+      depths_mm.push_back(meter(frame));
+    }
+    last = depths_mm.back();
+    try {
+      pad = fit_contact_threshold(sensor.camera, depths_mm);
+    } catch (const fingerpad::parameter_error&) {  // all noise
+      if (width + width / 8 * 2 > most_px) {
+        throw;
+      }
+      continue;
+    }
+    if (pad.threshold_per_mm >= 0.4 * pad.median_per_mm) {
+      break;
+    }
+  }
   Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
-  report.parameters = {
-      {"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
-      {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm}};
+  report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
+                       {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
+                       {"smoothing_px", double(*sensor.smoothing_px)}};
   report.doubt(!pad.ok(), text_of(pad));
   report.doubt(frames.size() < 3, "two frames are too few to estimate the noise: record ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
-               "the threshold is set by the noise instead of the edge: use more light or a wider "
-               "smoothing window");
+               "the threshold is set by the noise instead of the edge: use more light");
   Outcome outcome;
   outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm}};
+  outcome.sections["smoothing_px"] = *sensor.smoothing_px;
   Plot plot{"column on the middle row [px]", "depth of the free pad [mm]", {}};
   const int row = reference.rows / 2;
   for (int j = 0; j < reference.cols; j += 4) {

@@ -64,7 +64,7 @@ struct Arguments {
   calibrate::PadSize size;
   int max_radius_px = 50;
   calibrate::RimNoise rim;
-  Path contacts, gauge, practice;
+  Path contacts, gauge, practice, finger;
 };
 
 void add_geometry(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
@@ -182,6 +182,11 @@ int main(int argc, char** argv) {
   add_light(app, common, given, work);
   add_dots(app, common, work);
   add_forces(app, common, given, work);
+  app.add_subcommand("all",
+                     "everything that a folder has pictures of: plate/, plate_raised/, pad/, rim/, "
+                     "with about.json; writes its sensor.json")
+      ->add_option("FOLDER", given.finger, "folder of one's own finger")
+      ->required();
   app.add_subcommand("practice",
                      "write recordings of a virtual sensor to try the calibrations with")
       ->add_option("DIR", given.practice, "output folder")
@@ -197,7 +202,7 @@ int main(int argc, char** argv) {
       calibrate::write_practice(given.practice);
       return 0;
     }
-    return run(common, work);
+    return given.finger.empty() ? run(common, work) : calibrate::all(given.finger) ? 0 : 1;
   } catch (const std::exception& error) {
     print(calibrate::Refusal{name, error.what()});
     return 1;

@@ -60,6 +60,9 @@ void add_live_options(CLI::App& app, replay::LiveOptions& live) {
 
 void add_options(CLI::App& app, replay::Options& options, std::string& frames, bool& checks) {
   app.add_option("RECORDING", options.recording, "folder of the recording")->required();
+  app.add_option("--sensor", options.sensor,
+                 "sensor.json to read, with the reference beside it; default: the one in RECORDING")
+      ->option_text("FILE");
   const auto check = app.add_flag("--check", checks,
                                   "list the problems of the recording, one per line with the "
                                   "remedy; exit status 1 if there are any");
@@ -114,7 +117,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    return checks             ? replay::print_check(options.recording)
+    return checks             ? replay::print_check(options.recording, options.sensor)
            : live.asked_for() ? replay::run_live(options, live)
                               : replay::run(options);
   } catch (const std::exception& error) {

@@ -233,7 +233,7 @@ int run(const Options& options) {
   if (is_foam_recording(options.recording)) {
     return run_foam(options);
   }
-  Recording recording = open_recording(options.recording);
+  Recording recording = open_recording(options.recording, options.sensor);
   const Range range = within(options.range, recording.frames.size(), options.recording);
   const int total = *range.last - range.first;
   Chain chain(recording, options);

@@ -24,6 +24,7 @@ Range within(const Range& range, int size, const std::filesystem::path& recordin
 
 struct Options {
   std::filesystem::path recording;
+  std::filesystem::path sensor;  ///< sensor.json; empty: the one in the recording
   std::filesystem::path out;
   std::optional<int> smoothing_px;  ///< empty: that of sensor.json, else 1
   Range range;

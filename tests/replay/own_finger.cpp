@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A finger of one's own, from pictures to depth: a pad of rubber under a lamp that falls to one
 // side, with a spot and colour across.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +14,9 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
+#include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
+#include "replay/io/recording.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -113,6 +116,22 @@ fs::path record(double aside_mm) {
   return folder;
 }
 
+/// A target of 9 x 9 dots of 1 mm, 3 mm apart, `raised_mm` above the plate in air.
+cv::Mat target(double raised_mm) {
+  cv::Mat_<cv::Vec3w> image(size_px, size_px);
+  const double far = (camera.plate_distance_mm + raised_mm) / camera.plate_distance_mm;
+  const auto off = [](double x) { return x - 3 * std::clamp(std::round(x / 3), -4.0, 4.0); };
+  for (int i = 0; i < image.rows; ++i) {
+    for (int j = 0; j < image.cols; ++j) {
+      const auto at = far * point_at(camera, double(i), double(j), 0.0);
+      const double dark = 1 / (1 + std::exp((std::hypot(off(at.x), off(at.y)) - 0.5) / 0.05));
+      const auto level = cv::saturate_cast<ushort>(256 * 170 * (1 - 0.8 * dark));
+      image(i, j) = {level, level, level};
+    }
+  }
+  return image;
+}
+
 calibrate::Report calibrated(const fs::path& folder) {
   const fs::path sensor = folder / "sensor.json";
   save(calibrate::shape(folder, sensor, {base_mm, 0, ball_mm, 0, false}), sensor);
@@ -161,6 +180,41 @@ TEST_CASE("a finger of one's own: depth from pictures under an uneven lamp", "[o
     }
     CHECK(sum / count < 0.02);
   }
+}
+
+TEST_CASE("a finger of one's own: one command takes all that there is", "[own]") {
+  const fs::path finger = fs::temp_directory_path() / "fingerpad_all", pad = finger / "pad";
+  fs::remove_all(finger);
+  fs::create_directories(finger / "plate");
+  fs::create_directories(finger / "plate_raised");
+  fs::rename(record(0), pad);
+  fs::remove(pad / "sensor.json");
+  test::Random random(4);
+  for (const char* name : {"0.png", "1.png", "2.png"}) {
+    const auto free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
+    replay::write_png(pad / "free" / name, picture(free_mm, random));
+  }
+  replay::write_png(finger / "plate/0.png", target(0));
+  CHECK_THROWS_AS(calibrate::all(finger), replay::Failure);  // about.json is missing
+  std::ofstream(finger / "about.json")
+      << R"({"refractive_index": 1.33, "base_radius_mm": 18.7, "touch_ball_radius_mm": 10,)"
+      << R"( "target": {"rows": 9, "cols": 9, "pitch_mm": 3, "raised_mm": 10}})";
+  CHECK_FALSE(calibrate::all(finger));  // without the raised target there is no camera
+  replay::write_png(finger / "plate_raised/0.png", target(10));
+  CHECK_FALSE(calibrate::all(finger));  // rim/ is missing, and all else is there
+  const replay::Sensor sensor = replay::read_sensor(finger / "sensor.json");
+  CHECK(sensor.camera.plate_distance_mm == Approx(50).margin(0.5));
+  CHECK(sensor.pad.apex_height_mm == Approx(true_meridian().front().y).margin(0.02));
+  CHECK(sensor.light.has_value());
+  CHECK(sensor.contact_threshold_per_mm.has_value());
+  // a recording of its use needs no sensor.json of its own
+  const fs::path use = finger / "use";
+  fs::create_directories(use / "frames");
+  fs::copy_file(pad / "frames/0.png", use / "frames/0.png");
+  CHECK_THROWS_AS(replay::open_recording(use), replay::Failure);
+  const replay::Recording recording = replay::open_recording(use, finger / "sensor.json");
+  CHECK(recording.reference.size() == cv::Size(size_px, size_px));
+  CHECK(recording.free_frames.size() == 3);
 }
 
 TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {

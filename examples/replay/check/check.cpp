@@ -40,8 +40,10 @@ void note_missing(const Recording& recording, Findings& findings) {
   }
 }
 
-void check_camera_recording(const std::filesystem::path& folder, Findings& findings) {
-  Recording recording = open_recording(folder);
+void check_camera_recording(const std::filesystem::path& folder,
+                            const std::filesystem::path& sensor,
+                            Findings& findings) {
+  Recording recording = open_recording(folder, sensor);
   if (!recording.signals.times_s.empty()) {
     std::vector<double> times_s;
     for (int frame = 0; frame < recording.frames.size(); ++frame) {
@@ -63,13 +65,13 @@ void check_camera_recording(const std::filesystem::path& folder, Findings& findi
 
 }  // namespace
 
-Findings check_recording(const std::filesystem::path& folder) {
+Findings check_recording(const std::filesystem::path& folder, const std::filesystem::path& sensor) {
   Findings findings;
   try {
     if (is_foam_recording(folder)) {
       check_foam(open_foam_recording(folder), findings);
     } else {
-      check_camera_recording(folder, findings);
+      check_camera_recording(folder, sensor, findings);
     }
   } catch (const Failure& failure) {
     findings.push_back(
@@ -78,9 +80,9 @@ Findings check_recording(const std::filesystem::path& folder) {
   return findings;
 }
 
-int print_check(const std::filesystem::path& folder) {
+int print_check(const std::filesystem::path& folder, const std::filesystem::path& sensor) {
   int wrong = 0;
-  for (const Finding& finding : check_recording(folder)) {
+  for (const Finding& finding : check_recording(folder, sensor)) {
     std::printf("%s%s: %s. %s\n", finding.is_wrong ? "" : "(optional) ", finding.place.c_str(),
                 finding.what.c_str(), finding.remedy.c_str());
     wrong += finding.is_wrong ? 1 : 0;

@@ -19,9 +19,10 @@ struct Finding {
 using Findings = std::vector<Finding>;
 
 /// Returns all findings. A recording that cannot be read gives a finding, too.
-Findings check_recording(const std::filesystem::path& folder);
+Findings check_recording(const std::filesystem::path& folder,
+                         const std::filesystem::path& sensor = {});
 
 /// Prints a line for each finding. Returns the exit status: 1 if any finding is wrong, else 0.
-int print_check(const std::filesystem::path& folder);
+int print_check(const std::filesystem::path& folder, const std::filesystem::path& sensor = {});
 
 }  // namespace replay

@@ -161,24 +161,30 @@ void read_first_picture(const fs::path& folder, Recording& recording) {
 
 }  // namespace
 
-Recording open_pad(const fs::path& folder) {
+Recording open_pad(const fs::path& folder, const fs::path& sensor) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     fail(folder, "there is no such folder");
   }
+  const fs::path sensor_file = sensor.empty() ? folder / "sensor.json" : sensor;
   Recording recording;
-  recording.sensor = read_sensor(folder / "sensor.json");
+  recording.sensor = read_sensor(sensor_file);
+  fs::path free = folder / "free";
   if (!recording.sensor.dots_only) {
-    read_reference(folder, recording);
+    const fs::path at_sensor = sensor_file.parent_path();
+    read_reference(at_sensor, recording);
+    if (!fs::is_directory(free, error)) {
+      free = (at_sensor / recording.sensor.reference_frame).parent_path() / "free";
+    }
   }
-  if (fs::is_directory(folder / "free", error)) {
-    recording.free_frames = FrameSource::of_folder(folder / "free", recording.sensor.pictures);
+  if (fs::is_directory(free, error)) {
+    recording.free_frames = FrameSource::of_folder(free, recording.sensor.pictures);
   }
   return recording;
 }
 
-Recording open_recording(const fs::path& folder) {
-  Recording recording = open_pad(folder);
+Recording open_recording(const fs::path& folder, const fs::path& sensor) {
+  Recording recording = open_pad(folder, sensor);
   const auto& video = recording.sensor.video;
   const PictureFormat& format = recording.sensor.pictures;
   recording.frames = video ? FrameSource::of_video(folder / *video, format)

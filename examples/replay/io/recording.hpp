@@ -59,10 +59,12 @@ struct Recording {
   std::optional<SpaceGrid> stress_free_dots;
 };
 
-/// Opens and checks a recording; throws Failure.
-Recording open_recording(const std::filesystem::path& folder);
+/// Opens and checks a recording; throws Failure. `sensor` is its sensor.json, by default the one in
+/// the folder; what it names lies beside it.
+Recording open_recording(const std::filesystem::path& folder,
+                         const std::filesystem::path& sensor = {});
 
 /// Opens only the sensor and the free pad, without frames.
-Recording open_pad(const std::filesystem::path& folder);
+Recording open_pad(const std::filesystem::path& folder, const std::filesystem::path& sensor = {});
 
 }  // namespace replay

@@ -172,7 +172,7 @@ void play_to_folder(const Options& options, Recording& pad, LiveFrames& frames) 
 }  // namespace
 
 int run_live(const Options& options, const LiveOptions& live) {
-  Recording pad = open_pad(options.recording);
+  Recording pad = open_pad(options.recording, options.sensor);
   if (pad.sensor.dots_only) {
     fail(options.recording, "live pictures need a reference image of the free pad and its depth");
   }

@@ -99,10 +99,16 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
   }
   known.clear();
   T squares = T(0);
-  for (const detail::Scatter<T>& pixel : pixels) {
+  Index top = rows, bottom = -1, left = cols, right = -1;  // of the pad
+  for (Index k = 0; k < rows * cols; ++k) {
+    const detail::Scatter<T>& pixel = pixels[static_cast<std::size_t>(k)];
     if (is_finite(pixel.mean)) {
       known.push_back(pixel.mean);
       squares += pixel.squares;
+      top = (std::min)(top, k / cols);
+      bottom = k / cols;
+      left = (std::min)(left, k % cols);
+      right = (std::max)(right, k % cols);
     }
   }
   ThresholdFit<T> fit;
@@ -120,8 +126,9 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
       "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");
   if (fit.median_per_mm < T(1e-3)) {
     fit.cause = cause::depths_not_in_mm;
-  } else if (2 * known.size() < pixels.size()) {
-    fit.cause = "fewer than half of the pixels have a depth: check calibration, exposure and frame";
+  } else if (2 * static_cast<Index>(known.size()) < (bottom - top + 1) * (right - left + 1)) {
+    fit.cause =
+        "fewer than half of the pad's pixels have a depth: check calibration, exposure and frame";
   }
   return fit;
 }
