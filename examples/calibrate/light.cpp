@@ -321,6 +321,9 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
                        {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
                        {"smoothing_px", double(*sensor.smoothing_px)}};
   report.doubt(!pad.ok(), text_of(pad));
+  report.doubt(2 * cv::countNonZero(last == last) < cv::countNonZero(free_mm == free_mm),
+               "fewer than half of the pad's pixels have a depth: check calibration, exposure and "
+               "frame");
   report.doubt(frames.size() < 3, "two frames are too few to estimate the noise: record ten");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
                "the threshold is set by the noise instead of the edge: use more light");

@@ -10,7 +10,6 @@
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
-#include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/core/check.hpp"
@@ -30,7 +29,6 @@
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/traction.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/membrane/annulus.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
@@ -52,6 +50,8 @@
 
 #if __has_include(<Eigen/Core>)
 #include "fingerpad/calibrate/look_up.hpp"
+#include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"
 #include "fingerpad/sim/foam_contact.hpp"

@@ -41,7 +41,6 @@ const std::vector<Bounds> motion = {
     {hard::small_angle, 5e-5, 1e-9, 3e-7, 6e-16},
 };
 const std::vector<Bounds> membrane = {
-    {hard::march_from_rim, 0.5, 1e-10, 1e-5, 1e-11},
     {hard::thin_triangle, 0.5, 0.5, 3e-7, 6e-16},
 };
 const std::vector<Bounds> stick = {

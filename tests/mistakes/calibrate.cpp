@@ -508,7 +508,6 @@ TEST_CASE("mistakes: threshold of the contact", "[mistakes]") {
   check({
       {"none", free_pad(1, 1), "ok"},
       {"depths in m", free_pad(1e-3, 1), "give depths in mm"},
-      {"most depths missing", free_pad(1, 0.4), "fewer than half of the pad's pixels"},
       {"no depth at all", free_pad(1, 0), "pixels = 0"},
       {"height for depth", free_pad(-1, 1), "bulges too little"},
       {"no smoothing", free_pad(1, 1, 0.2), "bulges too little"},

@@ -301,7 +301,7 @@ TEST_CASE("dots lost at random change the ratio by the sampling error", "[stick_
   }
 }
 
-TEST_CASE("nothing is worse than a status", "[stick_ratio][law]") {
+TEST_CASE("stick ratio: nothing is worse than a status", "[stick_ratio][law]") {
   rc::prop("whatever the dots, the flags, the times and the sizes", [] {
     const Index rows = test::whole(1, 8), cols = test::whole(1, 8);
     const auto bad = [](double good) {

@@ -70,7 +70,7 @@ inline Section fluid_section() {
     std::vector<DepthSample<double>> samples;
     for (int n = 0; n < 60; ++n) {
       const double depth_mm = 0.5 + 11.5 * n / 59;
-      samples.push_back({pencil, 0, depth_mm, noisy_colour(pad, depth_mm, random)});
+      samples.push_back({pencil, {0, 0}, depth_mm, noisy_colour(pad, depth_mm, random)});
     }
     const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples));
     ours.add(fit.ok(), fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm, fit.fluid.kappa);

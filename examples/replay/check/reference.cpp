@@ -191,7 +191,34 @@ void check_colours(const Recording& recording, const Shape& shape, Findings& fin
   }
 }
 
-/// Checks that picture and depth match pixel by pixel; heights in plan view do not.
+/// Checks that the depths are along the pixels' rays: heights in plan view are nearer to those of a
+/// cap in plan view.
+void check_view(const Recording& recording, Findings& findings) {
+  const Pad& pad = recording.sensor.pad;
+  const double base_sq = pad.base_radius_mm * pad.base_radius_mm;
+  const double radius = (base_sq / pad.apex_height_mm + pad.apex_height_mm) / 2;
+  double along_sq = 0, plan_sq = 0;
+  for (int i = 0; i < recording.reference_depth.rows; ++i) {
+    for (int j = 0; j < recording.reference_depth.cols; ++j) {
+      const auto depth = static_cast<double>(recording.reference_depth(i, j));
+      const auto miss_sq = [&](double seen_at_mm) {
+        const auto at = point_at(recording.sensor.camera, double(i), double(j), seen_at_mm);
+        const double rho_sq = at.x * at.x + at.y * at.y;
+        const double cap = pad.apex_height_mm - radius + std::sqrt(radius * radius - rho_sq);
+        return rho_sq < 0.6 * base_sq ? (depth - cap) * (depth - cap) : 0;
+      };
+      along_sq += std::isfinite(depth) ? miss_sq(depth) : 0;
+      plan_sq += std::isfinite(depth) ? miss_sq(0) : 0;
+    }
+  }
+  if (plan_sq < along_sq / 4) {
+    findings.push_back({recording.sensor.reference_depth,
+                        "the depths are those of a pad in plan view",
+                        "Give the height along the ray of each pixel, not in plan view."});
+  }
+}
+
+/// Checks that picture and depth match pixel by pixel.
 void check_fit(const Recording& recording, Findings& findings) {
   const auto fit = [&]<class Pixel>(Pixel) {
     (void)fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption,
@@ -204,7 +231,7 @@ void check_fit(const Recording& recording, Findings& findings) {
     recording.reference.depth() == CV_16U ? fit(std::uint16_t()) : fit(std::uint8_t());
   } catch (const fingerpad::parameter_error& refusal) {
     findings.push_back({recording.sensor.reference_depth, refusal.what(),
-                        "Give the height along the ray of each pixel, not in plan view."});
+                        "Give the height of the free pad along the ray of each pixel."});
   }
 }
 
@@ -219,6 +246,7 @@ void check_reference(const Recording& recording, Findings& findings) {
     check_colours(recording, shape, findings);
   }
   if (findings.size() == before) {  // else the cause is already reported
+    check_view(recording, findings);
     check_fit(recording, findings);
   }
 }

@@ -57,9 +57,8 @@ struct Scatter {
 /// pad in mm: one determines the level, two the noise. Camera and ring must be those of the contact
 /// test. Pixels without a curvature in a frame do not count. Refuses bad parameters, frames of
 /// several sizes, and a pad without a positive threshold (parameter_error). Not ok: a pad flatter
-/// than a sphere of 1 m, and one of which less than half is seen. Curvatures are computed in S, as
-/// in the contact test, and summed in double if S is float. Allocates; O(frames rows cols
-/// directions).
+/// than a sphere of 1 m. Curvatures are computed in S, as in the contact test, and summed in double
+/// if S is float. Allocates; O(frames rows cols directions).
 template <scalar S = float,
           class CameraType,
           class Frames,
@@ -99,16 +98,10 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
   }
   known.clear();
   T squares = T(0);
-  Index top = rows, bottom = -1, left = cols, right = -1;  // of the pad
-  for (Index k = 0; k < rows * cols; ++k) {
-    const detail::Scatter<T>& pixel = pixels[static_cast<std::size_t>(k)];
+  for (const detail::Scatter<T>& pixel : pixels) {
     if (is_finite(pixel.mean)) {
       known.push_back(pixel.mean);
       squares += pixel.squares;
-      top = (std::min)(top, k / cols);
-      bottom = k / cols;
-      left = (std::min)(left, k % cols);
-      right = (std::max)(right, k % cols);
     }
   }
   ThresholdFit<T> fit;
@@ -126,9 +119,6 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
       "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");
   if (fit.median_per_mm < T(1e-3)) {
     fit.cause = cause::depths_not_in_mm;
-  } else if (2 * static_cast<Index>(known.size()) < (bottom - top + 1) * (right - left + 1)) {
-    fit.cause =
-        "fewer than half of the pad's pixels have a depth: check calibration, exposure and frame";
   }
   return fit;
 }

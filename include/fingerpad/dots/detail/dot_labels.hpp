@@ -280,20 +280,28 @@ class DotPrint {
       const DotGrowth growth(*base, spots);
       for (std::size_t k = 0; k < seeds_.size() && !done; ++k) {
         guesses.push_back(grown(growth, seeds_[k], spots, *base));
-        const bool better = guesses.back().score > best.score;
-        best = better ? guesses.back() : best;
-        done = static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
+        const Answer& guess = guesses.back();
+        const bool decides = best.ambiguous && !guess.ambiguous && guess.score == best.score;
+        const bool better = guess.score > best.score || decides;
+        best = better ? guess : best;
+        done = !best.ambiguous &&
+               static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
       }
     }
-    if (best.score <= 0) {
-      return {};
+    if (best.score <= 0 || best.ambiguous) {
+      return best.score > 0 ? best : Answer{};
     }
     for (const Answer& other : guesses) {
       if (static_cast<double>(other.score) >= nearly_as_good * static_cast<double>(best.score)) {
         drop_where_other(best.labels, other.labels);
       }
     }
-    DotGrowth(last, spots).drop_strangers(best.labels, max_off);
+    Labels by_last = best.labels, by_free = best.labels;  // the last frame may have had a shadow
+    DotGrowth(last, spots).drop_strangers(by_last, max_off);
+    DotGrowth(free_, spots).drop_strangers(by_free, max_off);
+    for (std::size_t k = 0; k < best.labels.cells().size(); ++k) {
+      best.labels.cells()[k] = (std::max)(by_last.cells()[k], by_free.cells()[k]);
+    }
     return static_cast<double>(number_of(best.labels)) >= min_explained * most ? best : Answer{};
   }
 
@@ -377,7 +385,7 @@ class DotPrint {
       if (!by) {
         by = shifts[k];
       } else {
-        answer.ambiguous = answer.ambiguous || is_rival(shifts[k], *by, sure, base, move);
+        answer.ambiguous = answer.ambiguous || is_rival(shifts[k], *by, labels, base, move);
       }
     }
     answer.score = -count(sure, blank, *by);
