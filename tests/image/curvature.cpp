@@ -718,8 +718,6 @@ TEMPLATE_TEST_CASE("a section's curvature follows 50 digits",
 
 TEMPLATE_TEST_CASE("maps of curvature follow 50 digits", "[curvature][figures]", float, double) {
   using S = TestType;
-  OrthographicCamera<double> plate;
-  plate.pitch_mm = 0.0768;
   rc::prop("plain", [&] {
     const double error = map_error<false, S>(plate);
     RC_ASSERT(error <= bound_per_mm<S>);
