@@ -182,7 +182,7 @@ class ContactShift {
       }
     }
     const Index w = frame_.width;
-    for (Index k = w; k + w < detail::size_of(side_); ++k) {
+    for (Index k = w + 1; k + w + 1 < detail::size_of(side_); ++k) {  // within the border
       bool chosen = side_[k] > 0;
       if (o_.edge_dots) {
         chosen = false;

@@ -288,8 +288,11 @@ class DotPrint {
                static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
       }
     }
+    const auto enough = [&] {
+      return static_cast<double>(number_of(best.labels)) >= min_explained * most;
+    };
     if (best.score <= 0 || best.ambiguous) {
-      return best.score > 0 ? best : Answer{};
+      return best.score > 0 && enough() ? best : Answer{};
     }
     for (const Answer& other : guesses) {
       if (static_cast<double>(other.score) >= nearly_as_good * static_cast<double>(best.score)) {
@@ -302,7 +305,7 @@ class DotPrint {
     for (std::size_t k = 0; k < best.labels.cells().size(); ++k) {
       best.labels.cells()[k] = (std::max)(by_last.cells()[k], by_free.cells()[k]);
     }
-    return static_cast<double>(number_of(best.labels)) >= min_explained * most ? best : Answer{};
+    return enough() ? best : Answer{};
   }
 
  private:
