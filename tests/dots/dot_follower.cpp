@@ -152,7 +152,8 @@ Errors errors_of(const Dots& found, const Dots& truth) {
 
 }  // namespace
 
-TEST_CASE("dot follower: centers are right to a hundredth of a pixel whatever the load") {
+TEST_CASE("dot follower: centers are right to a hundredth of a pixel whatever the load",
+          "[figures]") {
   DotFollower follower = follower_of({});
   Dots dots(count, count);
   for (const double load : {0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 0.8, 0.5, 0.2, 0.0}) {
@@ -222,7 +223,8 @@ TEST_CASE("dot follower: a covered, dirty or reflecting dot is lost and comes ba
   CHECK(norm(dots(4, 5) - dirty) < 0.05);
 }
 
-TEST_CASE("dot follower: after a jump of the whole print no label is wrong, and it can restart") {
+TEST_CASE("dot follower: after a jump of the whole print no label is wrong, and it can restart",
+          "[figures]") {
   const DotFollower free = follower_of({});
   const double pitches = GENERATE(0.2, 0.4, 0.5, 0.6, 0.8, 1.0, 1.4);
   const double angle = GENERATE(0.0, 0.7, 1.5707963);
