@@ -84,7 +84,7 @@ void try_finder(Input& in) {
 }
 
 void try_labels(Input& in) {
-  const double pitch = in.number(8, 20);
+  const double pitch = 8 + in.byte() / 21.0;
   DotFinder finder(picture(in, 90, 90, pitch, pitch / 4, 0));
   const Index rows = finder.rows(), cols = finder.cols();
   Places free(rows, cols), dots(rows, cols), again(rows, cols);

@@ -136,7 +136,7 @@ cv::Size read(const std::filesystem::path& folder, std::size_t bytes, Results& r
 
 /// As `replay RECORDING --video FILE --headless` does.
 void show(const std::filesystem::path& file, cv::Size size, std::size_t bytes, Results& results) {
-  auto frames = replay::LiveFrames::of_video(file, size, false);
+  auto frames = replay::LiveFrames::of_video(file, size, {}, false);
   require(frames.rate_hz() > 0 && std::isfinite(frames.rate_hz()), "a video has a frame rate");
   cv::Mat frame;
   double time_s = -1;

@@ -39,7 +39,7 @@ SideDots around(Input& in, Index count, double out_mm, double up_mm) {
 
 /// A dome with a level summit, and strange heights in it.
 test::HeightMap<double> any_shape(Input& in) {
-  test::HeightMap<double> map(radius_mm + 1, in.number(1, 4));
+  test::HeightMap<double> map(radius_mm + 1, 1 + in.byte() / 85.0);
   const double top = in.number(2, 12), steep = in.number(0, 0.3), reach_mm = in.number(0, 10);
   const Index row = in.whole(0, map.side() - 1), col = in.whole(0, map.side() - 1);
   const double odd = in.number(-5, 15);

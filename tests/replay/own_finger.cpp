@@ -18,6 +18,7 @@
 #include "replay/io/images.hpp"
 #include "replay/io/recording.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 #include "support/pad.hpp"
 
 namespace {
@@ -84,10 +85,8 @@ DepthMap pressed(const DepthMap& free_mm, const calibrate::Sphere& ball) {
 }
 
 /// Writes what a person records; one press may lie `aside_mm` from where it is written down.
-fs::path record(double aside_mm) {
+void record(const fs::path& folder, double aside_mm) {
   test::Random random(3);
-  const fs::path folder = fs::temp_directory_path() / "fingerpad_own_finger";
-  fs::remove_all(folder);
   fs::create_directories(folder / "free");
   fs::create_directories(folder / "frames");
   const DepthMap free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
@@ -113,7 +112,6 @@ fs::path record(double aside_mm) {
   std::ofstream(folder / "sensor.json")
       << R"({"camera": {"plate_distance_mm": 50, "refractive_index": 1.33,)"
       << R"( "center_px": [79.6, 79.1], "pitch_mm": 0.25}})";
-  return folder;
 }
 
 /// A target of 9 x 9 dots of 1 mm, 3 mm apart, `raised_mm` above the plate in air.
@@ -143,7 +141,9 @@ calibrate::Report calibrated(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("a finger of one's own: depth from pictures under an uneven lamp", "[own]") {
-  const fs::path folder = record(0);
+  const test::ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
+  record(folder, 0);
   const auto report = calibrated(folder);
   INFO(report.because);
   CHECK(report.verdict == calibrate::Verdict::good);
@@ -183,11 +183,11 @@ TEST_CASE("a finger of one's own: depth from pictures under an uneven lamp", "[o
 }
 
 TEST_CASE("a finger of one's own: one command takes all that there is", "[own]") {
-  const fs::path finger = fs::temp_directory_path() / "fingerpad_all", pad = finger / "pad";
-  fs::remove_all(finger);
+  const test::ScratchFolder scratch;
+  const fs::path &finger = scratch.path(), pad = finger / "pad";
   fs::create_directories(finger / "plate");
   fs::create_directories(finger / "plate_raised");
-  fs::rename(record(0), pad);
+  record(pad, 0);
   fs::remove(pad / "sensor.json");
   test::Random random(4);
   for (const char* name : {"0.png", "1.png", "2.png"}) {
@@ -218,7 +218,9 @@ TEST_CASE("a finger of one's own: one command takes all that there is", "[own]")
 }
 
 TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
-  const auto report = calibrated(record(0.5));
+  const test::ScratchFolder scratch;
+  record(scratch.path(), 0.5);
+  const auto report = calibrated(scratch.path());
   CHECK(report.verdict == calibrate::Verdict::doubtful);
   CHECK(report.because.find("press 2 is not where") != std::string::npos);
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -119,7 +120,7 @@ class Wrench {
     of_position_.resize(3 * width);
     of_load_.resize(6 * width);
     transposed_.resize(count, 6);
-    places_.reserve(static_cast<std::size_t>(options.max_marks));
+    places_ = detail::ReservedVector<Seen>(static_cast<std::size_t>(options.max_marks));
   }
 
   double reach_mm() const { return annulus_.options().reach_mm; }
@@ -339,7 +340,7 @@ class Wrench {
   bool begun_ = false;
   std::vector<double> parameters_, centre_, weight_, of_position_, of_load_;
   std::vector<double> free_radius_mm_ = std::vector<double>(81);  // on the plate, over the arc
-  std::vector<Seen> places_;
+  detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd normal_, transposed_;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes_;
   Eigen::VectorXd gradient_, residuals_;

@@ -141,7 +141,7 @@ struct FingertipWrench {
 
   Wrench<> wrench;
   OwnedGrid<Place> places;
-  std::vector<fingerpad::Mark> marks;
+  ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
 
@@ -150,7 +150,7 @@ struct FingertipWrench {
         places(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         dot_sd_px(o.dot_sd_px) {
     require("FingertipOptions", {{"dot_sd_px", o.dot_sd_px, positive}});
-    marks.reserve(places.cells.size());
+    marks = ReservedVector<fingerpad::Mark>(places.cells.size());
   }
 
   /// Learns from a frame that touches nothing.
