@@ -140,6 +140,7 @@ void bind_slip_result(py::module_& module) {
       .def_property_readonly("status", [](const Slip& r) { return name_of(r.status); })
       .def_readonly("evidence", &Slip::evidence)
       .def_readonly("stick_ratio", &Slip::stick_ratio, "in [0, 1]; NaN if unknown")
+      .def_readonly("ratio_sd", &Slip::ratio_sd, "standard deviation of stick_ratio")
       .def_readonly("update", &Slip::update, "whether the ratio is new")
       .def_readonly("dots_ratio", &Slip::dots_ratio, "stick ratio from the dots alone")
       .def_readonly("reference_age", &Slip::reference_age, "frames; 0 if unknown")

@@ -223,16 +223,21 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
   (void)limit(pull(2.2), seen);
   (void)limit(pull(2.2), seen);
   seen.status = StickStatus::falls_back;
-  seen.back = {.stick_ratio = 0.8, .reference_age = 1};
+  seen.ratio_sd = 0.3;
+  seen.back = {.stick_ratio = 0.8, .ratio_sd = 0.15, .reference_age = 1};
   SECTION("an object that turns round carries them, and its load falls") {
     const auto r = limit(pull(1.8), seen);
     CHECK(r.stick_ratio == 0.8);
+    CHECK(r.ratio_sd == 0.15);
+    CHECK(r.evidence == SlipEvidence::both);
     CHECK(r.update == RatioUpdate::fresh);
     CHECK(r.reference_age == 1);
     CHECK(limit(pull(1.4), seen).stick_ratio == 0.8);
   }
   SECTION("one that slides lets them go, and its load stays") {
-    CHECK(limit(pull(2.1), seen).stick_ratio == 0);
+    const auto r = limit(pull(2.1), seen);
+    CHECK(r.stick_ratio == 0);
+    CHECK(r.ratio_sd == 0.1);
   }
   SECTION("before a limit is known, that is the first slide of an object") {
     struct Case {
@@ -249,13 +254,14 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
       seen.back = {};
       (void)limit(pull(2.2), seen);
       seen.status = StickStatus::falls_back;
-      seen.back = {.stick_ratio = 0.8, .reference_age = 1};
+      seen.back = {.stick_ratio = 0.8, .ratio_sd = 0.15, .reference_age = 1};
       const auto r = limit(pull(c.pull_n), seen);
       CHECK(r.stick_ratio == c.stick_ratio);
       CHECK(r.falls_back);
       CHECK(is_finite(limit.limit()) == (c.stick_ratio == 0));
-      CHECK((r.evidence == SlipEvidence::both) == (c.stick_ratio == 0));
+      CHECK((r.evidence == SlipEvidence::both) == (c.stick_ratio != c.told));
       CHECK((r.update == RatioUpdate::fresh) == (c.stick_ratio != c.told));
+      CHECK(r.ratio_sd == (c.stick_ratio == 0 ? 0.1 : c.stick_ratio == 0.8 ? 0.15 : 0.3));
     }
   }
   SECTION("a contact that hardly presses has no limit") {

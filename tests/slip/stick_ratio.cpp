@@ -734,9 +734,10 @@ TEST_CASE("stick ratio: no answer while dots fall back toward their free places"
       CHECK((!free_known || r.stick_ratio == ratio));
       if (r.status == StickStatus::falls_back) {  // as one, whether carried or let go
         CHECK(r.back.stick_ratio > 0.7);
+        CHECK(r.back.ratio_sd == Approx(std::hypot(0.065, 0.9 / 9)));
         CHECK(r.back.reference_age > 0);
       } else {
-        CHECK(!is_finite(r.back.stick_ratio));
+        CHECK((!is_finite(r.back.stick_ratio) && !is_finite(r.back.ratio_sd)));
       }
     }
     CHECK((free_known ? answers == 0 : answers > 3));
@@ -810,9 +811,9 @@ TEST_CASE("stick ratio, bad input: a contact mask that drops out for a moment") 
   CHECK(at(3, 1.1, true).updated());
   const auto lost = at(4, 1.2, false);
   CHECK(lost.status == StickStatus::no_contact);
-  CHECK(lost.stick_ratio == 1);  // kept
+  CHECK((std::isnan(lost.stick_ratio) && std::isnan(lost.ratio_sd)));  // nothing touches
   CHECK(lost.dots_in_contact() == 0);
-  CHECK(at(4.5, 1.29, false).stick_ratio == 1);
+  CHECK(at(3, 1.29, true).stick_ratio == 1);  // kept
   const auto back = at(6, 1.3, true);
   CHECK(back.updated());  // against an earlier frame
   CHECK(back.reference_age == 3);

@@ -80,6 +80,9 @@ std::string words_of(const StickFrame& stick) {
     const bool by_friction =
         stick.evidence == SlipEvidence::friction || stick.evidence == SlipEvidence::both;
     const auto counted = result.stick + result.slip;
+    if (by_friction && ratio > 0) {
+      return format("stick ratio %.2f: the object carries dots back", ratio);
+    }
     return by_friction
                ? format("stick ratio %.2f, a slide by friction; %td of %td dots seem to stick",
                         ratio, result.stick, counted)

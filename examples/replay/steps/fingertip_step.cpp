@@ -108,12 +108,11 @@ class Step : public FingertipStep {
         }
       }
     }
-    const bool slides = touch.slip.status == fingerpad::FrictionLimitStatus::sliding;
     stick.result = touch.stick;
-    if (slides) {
+    stick.result.stick_ratio = touch.slip.stick_ratio;
+    stick.result.ratio_sd = touch.slip.ratio_sd;
+    if (touch.slip.update == fingerpad::RatioUpdate::fresh) {
       stick.result.status = fingerpad::StickStatus::updated;
-      stick.result.stick_ratio = 0;
-      stick.result.ratio_sd = 0.1;
     }
     stick.evidence = touch.slip.evidence;
     return dots;

@@ -186,7 +186,7 @@ class Fingertip {
       return FingertipStatus::no_contact;
     }
     touch.lacks_motion = dots_ && !touch.motion.has_pose();
-    touch.lacks_stick_ratio = dots_ && !is_finite(touch.stick.stick_ratio);
+    touch.lacks_stick_ratio = dots_ && !touch.slip.ok();
     touch.lacks_look_up =
         look_up_ && (look_up_->by_area || look_up_->by_depth) && !touch.normal.has_force();
     touch.lacks_wrench = wrench_ && !touch.wrench.ok();

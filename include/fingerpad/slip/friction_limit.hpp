@@ -159,6 +159,7 @@ struct [[nodiscard]] SlipResult {
   SlipEvidence evidence = SlipEvidence::none;
   /// In [0, 1]; NaN: unknown. With an imprint it is 1 - the imprint's evidence for slip.
   S stick_ratio = not_a_number<S>();
+  S ratio_sd = not_a_number<S>();             ///< of stick_ratio; NaN: unknown
   RatioUpdate update = RatioUpdate::missing;  ///< how current it is, for GripControl
   S dots_ratio = not_a_number<S>();           ///< of dots or imprint alone in this frame; NaN: none
   Index reference_age = 0;  ///< frames since the reference of the dots; 0: unknown
@@ -239,6 +240,7 @@ class FrictionLimit {
       result.status = FrictionLimitStatus::sliding;
       result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
       result.stick_ratio = S(0);
+      result.ratio_sd = S(0.1);  // as found on simulated contacts
       result.update = RatioUpdate::fresh;
     }
     return result;
@@ -257,26 +259,29 @@ class FrictionLimit {
     }
   SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen) {
     RatioUpdate update = update_of(seen.status);
-    S ratio = S(seen.stick_ratio);
+    S ratio = S(seen.stick_ratio), sd = S(seen.ratio_sd);
     Index age = seen.reference_age;
-    bool falls_back = false;
+    bool falls_back = false, carried = false;
     if constexpr (requires { seen.back.reference_age; }) {
       falls_back = is_finite(seen.back.stick_ratio);
       if (falls_back) {
         age = seen.back.reference_age;
         const S before = highest_of_last(age), now = friction_with(load);
-        const bool carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
+        carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
         const bool slides =
             S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
         ratio = carried ? S(seen.back.stick_ratio) : slides ? S(0) : ratio;
+        sd = carried ? S(seen.back.ratio_sd) : sd;
         update = carried || slides ? RatioUpdate::fresh : update;
       }
     }
     SlipResult<S> result = (*this)(load, ratio, update);
+    const bool slid = result.status == FrictionLimitStatus::sliding;
+    result.ratio_sd = slid ? result.ratio_sd : sd;
+    result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
     result.falls_back = falls_back;
-    result.in_doubt =
-        !falls_back && update == RatioUpdate::fresh && !(S(least_stick) < ratio - S(seen.ratio_sd));
+    result.in_doubt = !falls_back && update == RatioUpdate::fresh && !(S(least_stick) < ratio - sd);
     return result;
   }
 

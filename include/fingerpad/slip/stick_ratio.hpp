@@ -117,11 +117,13 @@ inline std::string check(const StickOptions& o) {
 template <scalar S = double>
 struct FallingBack {
   S stick_ratio = not_a_number<S>();  ///< if the object carries them; NaN: they do not fall back
-  Index reference_age = 0;            ///< frames since the reference
+  S ratio_sd = not_a_number<S>();
+  Index reference_age = 0;  ///< frames since the reference
 };
 
 /// Result of a frame. If the status is neither `updated` nor `no_outline`, all from stick_ratio on
-/// is that of the last frame with an answer in this contact.
+/// is that of the last frame with an answer in this contact; while nothing touches, the ratio is
+/// NaN.
 template <scalar S = double>
 struct [[nodiscard]] StickResult {
   StickStatus status = StickStatus::refused;
@@ -212,12 +214,17 @@ class StickRatio {
       result_.status = StickStatus::no_outline;
       result_.stick_ratio = not_a_number<S>();
     }
-    const S kept = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
-    const S fresh = sqrt_of(S(square(0.065)) + S(square(0.9)) / detail::number<S>(touching_));
+    const S fresh_sd = sqrt_of(S(square(0.065)) + S(square(0.9)) / detail::number<S>(touching_));
+    const S kept_sd = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
     result_.ratio_sd = !is_finite(result_.stick_ratio) ? not_a_number<S>()
-                       : result_.updated()             ? fresh
-                                                       : kept;
-    return result_;
+                       : result_.updated()             ? fresh_sd
+                                                       : kept_sd;
+    result_.back.ratio_sd = is_finite(result_.back.stick_ratio) ? fresh_sd : not_a_number<S>();
+    StickResult<S> result = result_;
+    if (result.status == StickStatus::no_contact) {
+      result.stick_ratio = result.ratio_sd = not_a_number<S>();
+    }
+    return result;
   }
 
   /// State of each dot in the last frame.
@@ -454,7 +461,7 @@ class StickRatio {
     const Index stick = std::count_if(pairs_.begin(), pairs_.end(), sticks);
     const S ratio = detail::number<S>(stick) / detail::number<S>(detail::size_of(pairs_));
     if (falls_back()) {
-      result_.back = {ratio, age};
+      result_.back = {.stick_ratio = ratio, .reference_age = age};
       return StickStatus::falls_back;
     }
     std::fill(states_.begin(), states_.end(), DotState::unknown);
