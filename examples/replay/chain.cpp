@@ -52,8 +52,8 @@ double seconds(const std::string& text) {
                       : std::strtod(text.c_str(), nullptr);
 }
 
-/// Sets the summary values of a depth map in `scene`.
-void describe_depth(const FingertipFrame& result, Scene& scene) {
+/// Sets the summary values of the depth map in `scene`.
+void describe_depth(Scene& scene) {
   double sum = 0;
   double top = -std::numeric_limits<double>::infinity();
   for (const float depth : scene.depth_mm) {
@@ -62,13 +62,12 @@ void describe_depth(const FingertipFrame& result, Scene& scene) {
       top = (std::max)(top, static_cast<double>(depth));
     }
   }
-  const auto valid = static_cast<double>(result.valid_pixels);
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const fingerpad::DepthResult& depth = scene.touch.depth;
+  const auto valid = static_cast<double>(depth.valid_pixels());
   scene.valid_share =
-      valid / static_cast<double>((std::max)(result.pad_pixels, fingerpad::Index{1}));
-  scene.pad_has_changed = result.pad_has_changed;
-  scene.depth_mean_mm = valid > 0 ? sum / valid : none;
-  scene.depth_max_mm = valid > 0 ? top : none;
+      valid / static_cast<double>((std::max)(depth.pad_pixels, fingerpad::Index{1}));
+  scene.depth_mean_mm = valid > 0 ? sum / valid : not_known;
+  scene.depth_max_mm = valid > 0 ? top : not_known;
 }
 
 }  // namespace
@@ -84,11 +83,12 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   FingertipFrame seen = (*fingertip_)(scene.frame, scene.image, dots_px, seconds(scene.time_s));
   scene.depth_mm = seen.depth_mm;
   scene.contact_mask = seen.contact_mask;
-  scene.contact = seen.contact;
   scene.dots = std::move(seen.dots);
-  scene.force = seen.force;
-  scene.wrench = std::move(seen.wrench);
-  describe_depth(seen, scene);
+  scene.touch = seen.touch;
+  scene.has_depth = true;
+  scene.has_rim = seen.has_rim;
+  scene.has_curves = recording_.sensor.force.has_value();
+  describe_depth(scene);
   frame_ms_.push_back(seen.frame_ms);
 }
 
@@ -102,11 +102,12 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
     scene.truth = truth->second;
   }
   scene.image = image;
-  const DotGrid dots_px = dots_.present() ? dots_.of(frame, image) : DotGrid();
+  scene.has_dots = dots_.present();
+  const DotGrid dots_px = scene.has_dots ? dots_.of(frame, image) : DotGrid();
   if (fingertip_) {
     look(dots_px, scene);
   } else if (dots_.present()) {
-    scene.dots = stick_(dots_px, seconds(scene.time_s));
+    scene.dots = stick_(dots_px, seconds(scene.time_s), scene.touch);
   }
   if (traction_ && dots_.present()) {
     scene.traction = traction_(scene.dots, scene.pressure_mpa);

@@ -23,6 +23,8 @@
 namespace replay {
 namespace {
 
+using fingerpad::ForceStatus;
+
 /// Mean of the finite values.
 class Mean {
  public:
@@ -55,19 +57,25 @@ void print_look_up(const Writer& writer, const Recording& recording) {
   double normal_n = 0, tangential_n = 0;
   Mean normal_error, tangential_error, moment_error;
   for (const FrameRow& row : writer.rows()) {
-    const ForceFrame& f = row.force;
-    const double along_n = std::hypot(f.tangential_n.x, f.tangential_n.y);
-    known += std::isfinite(f.normal_n) || std::isfinite(along_n) ? 1 : 0;
-    beyond += f.beyond_range ? 1 : 0;
-    disagreeing += std::abs(f.disagreement) > 3 ? 1 : 0;
-    normal_n = std::fmax(normal_n, f.normal_n);
+    const auto& touch = row.touch;
+    const auto& along = touch.shear.tangential_force_n;
+    const double along_n = std::hypot(along.x, along.y);
+    known += std::isfinite(touch.normal.force_n) || std::isfinite(along_n) ? 1 : 0;
+    for (const ForceStatus status :
+         {touch.by_area.status, touch.by_depth.status, touch.shear.status}) {
+      if (status == ForceStatus::beyond_range) {
+        ++beyond;
+        break;
+      }
+    }
+    disagreeing += std::abs(touch.normal.disagreement) > 3 ? 1 : 0;
+    normal_n = std::fmax(normal_n, touch.normal.force_n);
     tangential_n = std::fmax(tangential_n, along_n);
     if (row.truth) {
       const auto& truth = *row.truth;
-      normal_error.add(std::abs(f.normal_n + truth.force_n.z));
-      tangential_error.add(
-          std::hypot(f.tangential_n.x - truth.force_n.x, f.tangential_n.y - truth.force_n.y));
-      moment_error.add(std::abs(f.moment_n_mm - truth.moment_n_mm));
+      normal_error.add(std::abs(touch.normal.force_n + truth.force_n.z));
+      tangential_error.add(std::hypot(along.x - truth.force_n.x, along.y - truth.force_n.y));
+      moment_error.add(std::abs(touch.shear.moment_n_mm - truth.moment_n_mm));
     }
   }
   std::printf("look-up      in %d frames; maximum %.2f N normal, %.2f N tangential\n", known,
@@ -97,9 +105,9 @@ void print_wrench(const Writer& writer, const Recording& recording) {
   int known = 0;
   double largest_n = 0;
   for (const FrameRow& row : writer.rows()) {
-    if (row.has_wrench()) {
+    if (row.touch.wrench.ok()) {
       ++known;
-      const auto& f = row.wrench.force_n;
+      const auto& f = row.touch.wrench.force_n;
       largest_n = std::fmax(largest_n, std::sqrt(f.x * f.x + f.y * f.y + f.z * f.z));
     }
   }
@@ -116,9 +124,9 @@ void print_depth(const Chain& chain, const Writer& writer) {
   for (const FrameRow& row : writer.rows()) {
     valid_share += row.valid_share;
     deepest_mm = std::fmax(deepest_mm, row.depth_max_mm);
-    largest_mm2 = std::fmax(largest_mm2, row.contact.area_mm2);
-    in_contact += row.contact.in_contact() ? 1 : 0;
-    changed += row.pad_has_changed ? 1 : 0;
+    largest_mm2 = std::fmax(largest_mm2, row.touch.contact.area_mm2);
+    in_contact += row.touch.contact.in_contact() ? 1 : 0;
+    changed += row.pad_has_changed() ? 1 : 0;
   }
   const auto frames = static_cast<double>(writer.rows().size());
   std::printf("valid        %.2f %% of the pad's pixels\n", 100 * valid_share / frames);
@@ -135,7 +143,7 @@ void print_depth(const Chain& chain, const Writer& writer) {
 /// The most useful reason why no frame has a stick ratio.
 const char* why_none(const std::vector<FrameRow>& rows) {
   const bool outline = std::any_of(rows.begin(), rows.end(), [](const FrameRow& row) {
-    return row.stick.status == fingerpad::StickStatus::no_outline;
+    return row.touch.stick.status == fingerpad::StickStatus::no_outline;
   });
   return outline ? "all dots count as in contact, but some do not follow the object; if the object "
                    "is larger than the dot pattern, set \"stick\": {\"covers_pattern\": true} in "
@@ -152,15 +160,21 @@ void print_dots(const Chain& chain, const Writer& writer) {
   double lowest = std::numeric_limits<double>::infinity();
   int updated = 0;
   for (const FrameRow& row : writer.rows()) {
-    if (row.stick.updated()) {
+    if (row.touch.stick.updated()) {
       ++updated;
-      lowest = (std::min)(lowest, row.stick.stick_ratio);
+      lowest = (std::min)(lowest, row.touch.stick.stick_ratio);
     }
   }
   if (updated > 0) {
     std::printf("stick ratio  updated in %d frames; minimum %.2f\n", updated, lowest);
   } else {
     std::printf("stick ratio  none: %s\n", why_none(writer.rows()));
+  }
+}
+
+void print_doubts(const Writer& writer) {
+  for (const auto& [what, frames] : writer.doubts().in_words()) {
+    std::printf("doubted      %s in %s\n", what.c_str(), frames.c_str());
   }
 }
 
@@ -183,6 +197,7 @@ void print_summary(const Chain& chain,
     print_look_up(writer, recording);
     print_wrench(writer, recording);
   }
+  print_doubts(writer);
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());
   if (options.raw && !dots_only) {
     std::printf("depth maps   %s\n", (writer.place() / "depth").c_str());

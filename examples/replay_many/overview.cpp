@@ -13,6 +13,7 @@
 
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
+#include "replay/io/frame_table.hpp"
 
 namespace replay_many {
 namespace {
@@ -93,7 +94,7 @@ class Growing {
   std::ofstream stream_;
 };
 
-/// Maximum or minimum of columns over the frames of a recording; NaN if unknown.
+/// Maximum or minimum of columns over the frames of a recording, NaN if unknown, and its doubts.
 struct Extremes {
   struct Column {
     const char* name;  ///< column in frames.csv
@@ -106,7 +107,10 @@ struct Extremes {
       {"stick_ratio", true, "stick_ratio_min"}, {"normal_force_n", false, "normal_force_max_n"},
       {"wrench_fz_n", true, "wrench_fz_min_n"}, {"preslip", false, "preslip"}};
 
+  replay::Doubts doubts;
+
   void see(const std::string& name, const std::string& cell) {
+    doubts.see(name, cell);
     for (Column& column : columns) {
       if (!cell.empty() && name == column.name) {
         const double value = std::strtod(cell.c_str(), nullptr);
@@ -152,7 +156,7 @@ class Overview {
     for (const auto& column : Extremes().columns) {
       summary_ << ',' << column.title;
     }
-    summary_ << '\n';
+    summary_ << ",doubted\n";
   }
 
   Counts write() {
@@ -202,7 +206,11 @@ class Overview {
     for (const auto& column : extremes.columns) {
       summary_ << ',' << in_words(column.value);
     }
-    summary_ << '\n';
+    std::string doubted;
+    for (const auto& [what, in_frames] : extremes.doubts.in_words()) {
+      doubted += (doubted.empty() ? "" : "; ") + what + " in " + in_frames;
+    }
+    summary_ << ',' << quoted(doubted) << '\n';
     add_tile(found.name, status, failure.value_or(""), frames, extremes);
   }
 

@@ -73,7 +73,9 @@ std::vector<double> ratios(const std::vector<DotGrid>& frames,
   replay::StickStep step(frames.front().size(), options);
   std::vector<double> ratio;
   for (const DotGrid& dots : frames) {
-    const auto result = step(dots, none).stick.result;
+    fingerpad::FingertipResult touch;
+    (void)step(dots, none, touch);
+    const auto& result = touch.stick;
     ratio.push_back(result.updated() ? result.stick_ratio : none);
   }
   return ratio;

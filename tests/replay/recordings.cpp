@@ -137,14 +137,14 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::string line;
   std::getline(table, line);
   CHECK(line ==
-        "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
-        "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
-        "object,motion_status,object_x_mm,object_y_mm,object_z_mm,"
+        "frame,time_s,depth_status,pad_changed,valid_share,depth_mean_mm,depth_max_mm,"
+        "contact_status,contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
+        "motion_status,object,object_x_mm,object_y_mm,object_z_mm,"
         "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
-        "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
-        "shift_x_mm,shift_y_mm,shift_rad,"
+        "slip_status,dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
+        "shift_x_mm,shift_y_mm,shift_rad,look_up_status,"
         "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
-        "moment_z_nm,"
+        "moment_z_nm,wrench_status,"
         "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
         "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,"
         "wrench_mz_sd_nm");
@@ -152,11 +152,11 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
   // the free pad: without contact it has no position and no object
-  CHECK(line.find(",0.000000,,,,0,no contact,,,,,,,") != std::string::npos);
+  CHECK(line.find(",ok,0.000000,,,,no contact,,,,,,,,no contact,") != std::string::npos);
   CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 3) == "1,,");
-  CHECK(ends_with(line, ",,,,,,,,,,,,"));  // without a rim there is no force, nor its sd
+  CHECK(ends_with(line, ",no pressure,,,,,,,,,,,,"));  // a refusal has neither force nor its sd
   line.resize(line.size() - 12);
   CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every other column is filled
   CHECK(std::count(line.begin(), line.end(), ',') == columns - 12);
@@ -406,8 +406,8 @@ TEST_CASE("a lamp that has changed is told of the frame") {
   replay::Recording recording = replay::open_recording(work.recording());
   replay::Chain chain(recording, work.options());
   const cv::Mat frame = cv::imread((work.recording() / "frames/000002.png").string());
-  CHECK_FALSE(chain(2, frame).pad_has_changed);
-  CHECK(chain(2, frame * 0.85).pad_has_changed);
+  CHECK_FALSE(chain(2, frame).pad_has_changed());
+  CHECK(chain(2, frame * 0.85).pad_has_changed());
 }
 
 TEST_CASE("16-bit frames give the depth of 8-bit frames") {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <limits>
 #include <regex>
 #include <system_error>
 #include <vector>
@@ -18,45 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* columns =
-    "frame,time_s,valid_share,depth_mean_mm,depth_max_mm,"
-    "contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
-    "object,motion_status,object_x_mm,object_y_mm,object_z_mm,"
-    "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
-    "dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
-    "shift_x_mm,shift_y_mm,shift_rad,"
-    "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
-    "moment_z_nm,"
-    "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
-    "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,wrench_mz_sd_nm";
 constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
-
-const char* words_of(fingerpad::SlipEvidence evidence) {
-  switch (evidence) {
-    case fingerpad::SlipEvidence::none:
-      return "";
-    case fingerpad::SlipEvidence::dots:
-      return "dots";
-    case fingerpad::SlipEvidence::imprint:
-      return "imprint";
-    case fingerpad::SlipEvidence::friction:
-      return "friction";
-    case fingerpad::SlipEvidence::both:
-      return "dots+friction";
-  }
-  return "";
-}
 
 /// "1" or "0"; empty if the state is unknown or the dot is not in contact.
 const char* stick_cell(DotState state) {
   return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
-}
-
-void close_file(std::ofstream& stream, const fs::path& file) {
-  stream.close();
-  if (!stream) {
-    fail(file, "cannot be written");
-  }
 }
 
 /// Whether the program itself writes a file of this path, relative to the output folder.
@@ -201,59 +166,6 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
   return stem + digits + extension;
 }
 
-FramesCsv::FramesCsv(const fs::path& file) : file_(file), stream_(file) {
-  stream_ << columns << '\n';
-}
-
-void FramesCsv::write(const FrameRow& row) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const auto& contact = row.contact;
-  stream_ << row.frame << ',' << row.time_s << ',' << cell_of(row.valid_share) << ','
-          << cell_of(row.depth_mean_mm) << ',' << cell_of(row.depth_max_mm) << ','
-          << cell_of(contact.ok() ? contact.area_mm2 : none) << ',' << cell_of(contact.depth_mm)
-          << ',' << cell_of(contact.center_mm.x) << ',' << cell_of(contact.center_mm.y);
-  const auto& motion = row.motion;
-  if (row.has_dots) {
-    stream_ << ',' << motion.object << ',' << name_of(motion.status);
-  } else {
-    stream_ << ",,";
-  }
-  for (const double value : {motion.position_mm.x, motion.position_mm.y, motion.position_mm.z,
-                             motion.angles.x_rad, motion.angles.y_rad, motion.angles.z_rad}) {
-    stream_ << ',' << cell_of(motion.has_pose() ? value : none);
-  }
-  const auto& stick = row.stick;
-  if (row.has_dots) {
-    stream_ << ',' << stick.dots_in_contact() << ',' << cell_of(stick.stick_ratio) << ','
-            << (stick.updated() ? 1 : 0) << ',' << cell_of(stick.ratio_sd) << ','
-            << words_of(row.slip_evidence);
-  } else {
-    stream_ << ",,,,,";
-  }
-  const auto& shift = row.force.shift;
-  constexpr double metre = 1000;  // in mm
-  for (const double value :
-       {shift.displacement.x, shift.displacement.y, shift.rotation_rad, row.force.flat_area_mm2,
-        row.force.normal_n, row.force.normal_sd_n, row.force.tangential_n.x,
-        row.force.tangential_n.y, row.force.moment_n_mm / metre}) {
-    stream_ << ',' << cell_of(value);
-  }
-  const fingerpad::Point3<double>& force = row.wrench.force_n;
-  const fingerpad::Point3<double>& moment = row.wrench.moment_n_mm;
-  for (const double value :
-       {force.x, force.y, force.z, moment.x / metre, moment.y / metre, moment.z / metre}) {
-    stream_ << ',' << cell_of(row.has_wrench() ? value : none);
-  }
-  for (std::size_t k = 0; k < 6; ++k) {
-    stream_ << ',' << cell_of(row.wrench_sd[k] / (k < 3 ? 1 : metre));
-  }
-  stream_ << '\n';
-}
-
-void FramesCsv::close() {
-  close_file(stream_, file_);
-}
-
 DotsCsv::DotsCsv(const fs::path& file) : file_(file), stream_(file) {
   stream_ << dot_columns << '\n';
 }
@@ -266,7 +178,7 @@ void DotsCsv::write(int frame, const FrameDots& dots) {
       if (is_present(px)) {
         stream_ << frame << ',' << i << ',' << j << ',' << cell_of(px[0]) << ',' << cell_of(px[1])
                 << ',' << cell_of(mm[0]) << ',' << cell_of(mm[1]) << ',' << cell_of(mm[2]) << ','
-                << (dots.in_contact(i, j) != 0 ? 1 : 0) << ',' << stick_cell(dots.stick.state(i, j))
+                << (dots.in_contact(i, j) != 0 ? 1 : 0) << ',' << stick_cell(dots.state(i, j))
                 << '\n';
       }
     }
@@ -274,7 +186,10 @@ void DotsCsv::write(int frame, const FrameDots& dots) {
 }
 
 void DotsCsv::close() {
-  close_file(stream_, file_);
+  stream_.close();
+  if (!stream_) {
+    fail(file_, "cannot be written");
+  }
 }
 
 }  // namespace replay

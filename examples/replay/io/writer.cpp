@@ -38,13 +38,9 @@ Writer::Writer(const Recording& recording,
 }
 
 void Writer::operator()(Scene scene) {
-  with_force_ = with_force_ || scene.force.looked_up;
-  with_wrench_ = with_wrench_ || scene.wrench.present;
-  rows_.push_back({scene.frame, scene.time_s, scene.valid_share, scene.depth_mean_mm,
-                   scene.depth_max_mm, scene.contact, scene.dots.motion, scene.dots.stick.present(),
-                   scene.dots.stick.result, scene.dots.stick.evidence, scene.force, scene.truth,
-                   scene.wrench.result, scene.wrench.sd, scene.pressure_mpa,
-                   scene.pad_has_changed});
+  with_force_ = with_force_ || (scene.has_curves && scene.touch.contact.ok());
+  with_rim_ = with_rim_ || scene.has_rim;
+  rows_.push_back(scene);
   table_.write(rows_.back());
   if (dots_) {
     dots_->write(scene.frame, scene.dots);
@@ -95,7 +91,7 @@ void Writer::finish() {
       if (with_force_) {
         write_picture(output_.file("pictures", "forces.png"), force_chart(title, rows_));
       }
-      if (with_wrench_) {
+      if (with_rim_) {
         write_picture(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
       }
     }

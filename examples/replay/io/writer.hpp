@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "replay/io/frame_table.hpp"
 #include "replay/io/output.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/pictures/pictures.hpp"
@@ -28,6 +29,7 @@ class Writer {
   void finish();
 
   const std::vector<FrameRow>& rows() const { return rows_; }
+  const Doubts& doubts() const { return table_.doubts(); }
   const OutputFolder& output() const { return output_; }
   const std::filesystem::path& place() const { return output_.place(); }
 
@@ -44,7 +46,7 @@ class Writer {
   DotGrid initial_dots_;
   int total_;
   bool with_force_ = false;
-  bool with_wrench_ = false;
+  bool with_rim_ = false;
   OutputFolder output_;
   FramesCsv table_;
   std::optional<DotsCsv> dots_;

@@ -26,11 +26,11 @@ std::string words_of_contact(const ContactResult& contact) {
                 contact.depth_mm, rounded(contact.center_mm.x), rounded(contact.center_mm.y));
 }
 
-std::string words_of_motion(const FrameDots& dots) {
-  if (dots.dots_px.empty()) {
+std::string words_of_motion(const FrameRow& row) {
+  if (!row.has_dots) {
     return "no dots";
   }
-  const auto& motion = dots.motion;
+  const auto& motion = row.touch.motion;
   if (!motion.has_pose()) {
     return std::string("object: ") + name_of(motion.status);
   }
@@ -83,8 +83,8 @@ cv::Mat Painter::contact(const Scene& scene, const DotGrid& initial_px) const {
   paint_dots(sheet.canvas, sheet.place, scene.dots, initial_px);
   paint_outline(sheet.canvas, sheet.place, scene.contact_mask, 2);
   paint_scale_bar(sheet.canvas, sheet.place, scene.image.cols, camera_.pitch_mm);
-  sheet.write(50, words_of_contact(scene.contact));
-  sheet.write(74, words_of_motion(scene.dots));
+  sheet.write(50, words_of_contact(scene.touch.contact));
+  sheet.write(74, words_of_motion(scene));
   return sheet.canvas.finished();
 }
 

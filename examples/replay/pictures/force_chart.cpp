@@ -11,14 +11,16 @@ namespace replay {
 cv::Mat force_chart(const std::string& title, const std::vector<FrameRow>& rows) {
   LinePanel normal{
       "normal force (positive: press), N",
-      {line_series("look-up", rows, [](const FrameRow& row) { return row.force.normal_n; })}};
+      {line_series("look-up", rows, [](const FrameRow& row) { return row.touch.normal.force_n; })}};
   LinePanel tangential{
       "force along the plate, N",
-      {line_series("x", rows, [](const FrameRow& row) { return row.force.tangential_n.x; }),
-       line_series("y", rows, [](const FrameRow& row) { return row.force.tangential_n.y; })}};
-  LinePanel moment{
-      "moment about the normal through the middle of the contact, N mm",
-      {line_series("look-up", rows, [](const FrameRow& row) { return row.force.moment_n_mm; })}};
+      {line_series("x", rows,
+                   [](const FrameRow& row) { return row.touch.shear.tangential_force_n.x; }),
+       line_series("y", rows,
+                   [](const FrameRow& row) { return row.touch.shear.tangential_force_n.y; })}};
+  LinePanel moment{"moment about the normal through the middle of the contact, N mm",
+                   {line_series("look-up", rows,
+                                [](const FrameRow& row) { return row.touch.shear.moment_n_mm; })}};
   const auto add_truth = [&](LinePanel& panel, int beside, const char* name, const auto& of) {
     panel.series.push_back(line_series(
         name, rows, [&](const FrameRow& row) { return row.truth ? of(*row.truth) : not_known; }));

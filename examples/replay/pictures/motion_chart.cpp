@@ -17,21 +17,22 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 cv::Mat motion_chart(const std::string& title, const std::vector<FrameRow>& rows) {
   const auto moved = [](double fingerpad::Point3<double>::*axis) {
     return [axis](const FrameRow& row) {
-      return row.motion.has_pose() ? row.motion.displacement_mm.*axis : none;
+      return row.touch.motion.has_pose() ? row.touch.motion.displacement_mm.*axis : none;
     };
   };
   const auto rotated = [](double fingerpad::Angles<double>::*axis) {
     return [axis](const FrameRow& row) {
-      return row.motion.has_pose() ? row.motion.angles.*axis / degree : none;
+      return row.touch.motion.has_pose() ? row.touch.motion.angles.*axis / degree : none;
     };
   };
   using Point = fingerpad::Point3<double>;
   using Angles = fingerpad::Angles<double>;
   const std::vector<LinePanel> panels = {
       {"contact area, mm^2",
-       {line_series("area", rows, [](const FrameRow& row) { return row.contact.area_mm2; })}},
+       {line_series("area", rows, [](const FrameRow& row) { return row.touch.contact.area_mm2; })}},
       {"contact depth, mm",
-       {line_series("depth", rows, [](const FrameRow& row) { return row.contact.depth_mm; })}},
+       {line_series("depth", rows,
+                    [](const FrameRow& row) { return row.touch.contact.depth_mm; })}},
       {"displacement of the object, mm",
        {line_series("x", rows, moved(&Point::x)), line_series("y", rows, moved(&Point::y)),
         line_series("z", rows, moved(&Point::z))}},

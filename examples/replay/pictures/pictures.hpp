@@ -25,23 +25,12 @@ struct Section {
 };
 
 /// The data of one frame for pictures.
-struct Scene {
-  int frame = 0;
-  std::string time_s;        ///< empty if unknown
+struct Scene : FrameRow {
   cv::Mat image;             ///< 8- or 16-bit colour
   cv::Mat_<float> depth_mm;  ///< empty for a dots-only recording
   Section section;
-  double valid_share = not_known;
-  bool pad_has_changed = false;      ///< its light differs from the reference
-  double depth_mean_mm = not_known;  ///< if no pixel is valid
-  double depth_max_mm = not_known;
-  double pressure_mpa = not_known;
   cv::Mat_<uchar> contact_mask;  ///< nonzero in contact; empty like the depth
-  ContactResult contact;
   FrameDots dots;
-  ForceFrame force;
-  std::optional<TrueForce> truth;
-  WrenchFrame wrench;
   TractionFrame traction;
 };
 

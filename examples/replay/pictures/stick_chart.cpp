@@ -56,7 +56,7 @@ void paint_ratio(Canvas& canvas, const Panel& panel, const std::vector<FrameRow>
   std::vector<Spot> kept;
   std::vector<Spot> updated;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto& stick = rows[k].stick;
+    const auto& stick = rows[k].touch.stick;
     const double ratio = stick.stick_ratio;
     if (!std::isfinite(ratio)) {
       canvas.curve(kept, 1.6, kept_ink);
@@ -95,7 +95,7 @@ void paint_dots_in_contact(Canvas& canvas, const Panel& panel, const std::vector
   std::vector<Spot> spots;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     spots.emplace_back(panel.x(static_cast<double>(k)),
-                       panel.y(static_cast<double>(rows[k].stick.dots_in_contact())));
+                       panel.y(static_cast<double>(rows[k].touch.stick.dots_in_contact())));
   }
   canvas.curve(spots, 1.6, ink::grey);
 }
@@ -108,7 +108,7 @@ cv::Mat stick_chart(const std::string& title, const std::vector<FrameRow>& rows)
   const Panel ratio{{72, 88, width, 240}, 1.0, last};
   double most = 1;
   for (const FrameRow& row : rows) {
-    most = (std::max)(most, static_cast<double>(row.stick.dots_in_contact()));
+    most = (std::max)(most, static_cast<double>(row.touch.stick.dots_in_contact()));
   }
   const double decade = std::pow(10, std::floor(std::log10(most)));
   const double tick = decade * (most < 2 * decade ? 0.5 : most < 5 * decade ? 1 : 2);

@@ -72,13 +72,13 @@ void paint_slip(Canvas& canvas, Spot from, Spot slip) {
   canvas.polygon({tip, head + 2.5 * across, head - 2.5 * across}, ink::black);
 }
 
-std::string words_of(const StickFrame& stick) {
+std::string words_of(const fingerpad::FingertipResult& touch) {
   using fingerpad::SlipEvidence;
-  const auto& result = stick.result;
+  const auto& result = touch.stick;
   const double ratio = result.stick_ratio;
   if (result.updated()) {
     const bool by_friction =
-        stick.evidence == SlipEvidence::friction || stick.evidence == SlipEvidence::both;
+        touch.slip.evidence == SlipEvidence::friction || touch.slip.evidence == SlipEvidence::both;
     const auto counted = result.stick + result.slip;
     if (by_friction && ratio > 0) {
       return format("stick ratio %.2f: the object carries dots back", ratio);
@@ -104,15 +104,15 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
   for (int i = 0; i < dots.rows; ++i) {
     for (int j = 0; j < dots.cols; ++j) {
       if (is_present(dots(i, j))) {
-        paint_dot(canvas, place.of(dots(i, j)[0], dots(i, j)[1]), scene.dots.stick.state(i, j));
+        paint_dot(canvas, place.of(dots(i, j)[0], dots(i, j)[1]), scene.dots.state(i, j));
       }
     }
   }
-  const cv::Mat_<cv::Vec2d>& slips = scene.dots.stick.slips_mm;
+  const cv::Mat_<cv::Vec2d>& slips = scene.dots.slips_mm;
   const double length = enlarged * place.shrink * px_per_mm(scene.dots);
   for (int i = 0; i < slips.rows; ++i) {
     for (int j = 0; j < slips.cols; ++j) {
-      if (is_present(dots(i, j)) && scene.dots.stick.state(i, j) == DotState::slip) {
+      if (is_present(dots(i, j)) && scene.dots.state(i, j) == DotState::slip) {
         paint_slip(canvas, place.of(dots(i, j)[0], dots(i, j)[1]),
                    length * Spot(slips(i, j)[0], slips(i, j)[1]));
       }
@@ -132,7 +132,7 @@ cv::Mat stick_picture(const Scene& scene, double brightest) {
     canvas.text({x + 22, y + letter / 2}, format("slip, drawn %.0f times as long", enlarged),
                 letter, ink::black);
   }
-  sheet.write(54, words_of(scene.dots.stick));
+  sheet.write(54, words_of(scene.touch));
   return canvas.finished();
 }
 

@@ -12,12 +12,13 @@ cv::Mat wrench_chart(const std::string& title, const std::vector<FrameRow>& rows
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   using Point = fingerpad::Point3<double>;
   const auto force = [](double Point::*axis) {
-    return
-        [axis](const FrameRow& row) { return row.has_wrench() ? row.wrench.force_n.*axis : none; };
+    return [axis](const FrameRow& row) {
+      return row.touch.wrench.ok() ? row.touch.wrench.force_n.*axis : none;
+    };
   };
   const auto moment = [](double Point::*axis) {
     return [axis](const FrameRow& row) {
-      return row.has_wrench() ? row.wrench.moment_n_mm.*axis : none;
+      return row.touch.wrench.ok() ? row.touch.wrench.moment_n_mm.*axis : none;
     };
   };
   const auto pressure_kpa = [](const FrameRow& row) { return 1000 * row.pressure_mpa; };

@@ -18,7 +18,6 @@ namespace replay {
 namespace {
 
 using fingerpad::FingertipResult;
-using fingerpad::ForceStatus;
 
 using fingerpad::Fingertip;
 using fingerpad::FingertipOptions;
@@ -73,15 +72,16 @@ class Step : public FingertipStep {
     out.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     out.depth_mm = copy_of(fingertip_.depth_mm());
     out.contact_mask = copy_of(fingertip_.contact_mask());
-    out.valid_pixels = touch.depth.valid_pixels();
-    out.pad_pixels = touch.depth.pad_pixels;
-    out.pad_has_changed = touch.depth.status == fingerpad::FrameStatus::not_of_this_pad;
-    out.contact = touch.contact;
-    out.force = force_of(touch);
     if (with_dots_) {
       out.dots = dots_of(dots_px, touch);
     }
-    out.wrench = wrench_of(touch);
+    out.has_rim = with_wrench_;
+    out.touch = touch;
+    out.touch.stick.stick_ratio = touch.slip.stick_ratio;
+    out.touch.stick.ratio_sd = touch.slip.ratio_sd;
+    if (touch.slip.update == fingerpad::RatioUpdate::fresh) {
+      out.touch.stick.status = fingerpad::StickStatus::updated;
+    }
     return out;
   }
 
@@ -91,58 +91,22 @@ class Step : public FingertipStep {
     dots.dots_px = dots_px;
     dots.dots_mm.create(dots_px.size());
     dots.in_contact = copy_of(fingertip_.dots_in_contact());
-    dots.motion = touch.motion;
-    StickFrame& stick = dots.stick;
-    stick.states.create(dots_px.size());
+    dots.states.create(dots_px.size());
     if (touch.stick.updated()) {
-      stick.slips_mm.create(dots_px.size());
+      dots.slips_mm.create(dots_px.size());
     }
     for (int i = 0; i < dots_px.rows; ++i) {
       for (int j = 0; j < dots_px.cols; ++j) {
         const auto& p = fingertip_.dots_mm()(i, j);
         dots.dots_mm(i, j) = {p.x, p.y, p.z};
-        stick.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
-        if (!stick.slips_mm.empty()) {
+        dots.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
+        if (!dots.slips_mm.empty()) {
           const auto& slip = fingertip_.dot_slips()(i, j);
-          stick.slips_mm(i, j) = {slip.x, slip.y};
+          dots.slips_mm(i, j) = {slip.x, slip.y};
         }
       }
     }
-    stick.result = touch.stick;
-    stick.result.stick_ratio = touch.slip.stick_ratio;
-    stick.result.ratio_sd = touch.slip.ratio_sd;
-    if (touch.slip.update == fingerpad::RatioUpdate::fresh) {
-      stick.result.status = fingerpad::StickStatus::updated;
-    }
-    stick.evidence = touch.slip.evidence;
     return dots;
-  }
-
-  ForceFrame force_of(const FingertipResult& touch) const {
-    ForceFrame force;
-    force.shift = touch.shift;
-    force.looked_up = recording_.sensor.force.has_value() && touch.contact.ok();
-    force.flat_area_mm2 = touch.flat_area.area_mm2;
-    force.normal_n = touch.normal.force_n;
-    force.normal_sd_n = std::sqrt(touch.normal.variance_n2);
-    force.disagreement = touch.normal.disagreement;
-    for (const ForceStatus status :
-         {touch.by_area.status, touch.by_depth.status, touch.shear.status}) {
-      force.beyond_range = force.beyond_range || status == ForceStatus::beyond_range;
-    }
-    force.tangential_n = touch.shear.tangential_force_n;
-    force.moment_n_mm = touch.shear.moment_n_mm;
-    return force;
-  }
-
-  WrenchFrame wrench_of(const FingertipResult& touch) const {
-    WrenchFrame wrench;
-    wrench.present = with_wrench_;
-    wrench.result = touch.wrench;
-    for (Eigen::Index k = 0; wrench.result.ok() && k < 6; ++k) {
-      wrench.sd[static_cast<std::size_t>(k)] = std::sqrt(wrench.result.covariance(k, k));
-    }
-    return wrench;
   }
 
   const Recording& recording_;

@@ -14,13 +14,9 @@ namespace replay {
 struct FingertipFrame {
   cv::Mat_<float> depth_mm;      ///< NaN where there is no depth
   cv::Mat_<uchar> contact_mask;  ///< 255 in contact, else 0
-  fingerpad::Index valid_pixels = 0;
-  fingerpad::Index pad_pixels = 0;
-  bool pad_has_changed = false;  ///< its light differs from the reference
-  ContactResult contact;
   FrameDots dots;
-  ForceFrame force;
-  WrenchFrame wrench;
+  fingerpad::FingertipResult touch;
+  bool has_rim = false;         ///< there is data for the six axes
   double frame_ms = not_known;  ///< time of the computation
 };
 

@@ -3,18 +3,15 @@
 #pragma once
 // The results of a frame for tables and pictures. Forces are those that the object exerts on the
 // pad; NaN means unknown.
-#include <array>
+#include <cstdint>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <vector>
+#include <optional>
+#include <string>
 
-#include "fingerpad/contact/contact_region.hpp"
-#include "fingerpad/force/wrench.hpp"
-#include "fingerpad/motion/contact_shift.hpp"
-#include "fingerpad/motion/object_motion.hpp"
-#include "fingerpad/slip/friction_limit.hpp"
-#include "fingerpad/slip/stick_ratio.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
 #include "replay/dots/grid.hpp"
+#include "replay/io/true_forces.hpp"
 
 namespace replay {
 
@@ -23,45 +20,38 @@ using fingerpad::DotState;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-/// Stick and slip of the dots in a frame.
-struct StickFrame {
-  cv::Mat_<uchar> states;           ///< DotState of each dot; empty if the recording has no dots
-  cv::Mat_<cv::Vec2d> slips_mm;     ///< of each dot since the reference, NaN if unknown; empty if
-                                    ///< this frame has no new result
-  fingerpad::StickResult<> result;  ///< uses friction if forces are known
-  fingerpad::SlipEvidence evidence = fingerpad::SlipEvidence::none;
+/// The numbers of one frame: a line of frames.csv.
+struct FrameRow {
+  int frame = 0;
+  std::string time_s;  ///< empty if unknown
+  double pressure_mpa = not_known;
+  double valid_share = not_known;    ///< of the pad's pixels; NaN for a dots-only recording
+  double depth_mean_mm = not_known;  ///< if no pixel is valid
+  double depth_max_mm = not_known;
+  bool has_depth = false;  ///< what the recording has the data for
+  bool has_dots = false;
+  bool has_curves = false;  ///< for forces by look-up
+  bool has_rim = false;     ///< for the six axes
+  /// Its stick ratio is that of dots and friction together. A dots-only recording has that of the
+  /// dots alone.
+  fingerpad::FingertipResult touch;
+  std::optional<TrueForce> truth;
 
-  DotState state(int row, int col) const { return static_cast<DotState>(states(row, col)); }
-  bool present() const { return !states.empty(); }
+  bool pad_has_changed() const {
+    return has_depth && touch.depth.status == fingerpad::FrameStatus::not_of_this_pad;
+  }
 };
 
-/// The dots of one frame and their results. Grids are empty if the recording has no dots.
+/// The dots of one frame. Grids are empty if the recording has no dots.
 struct FrameDots {
   DotGrid dots_px;
-  cv::Mat_<cv::Vec3d> dots_mm;  ///< NaN where a dot was not found or has no depth
-  cv::Mat_<uchar> in_contact;   ///< 1 in contact, else 0
-  fingerpad::ObjectMotionResult<double> motion;
-  StickFrame stick;
-};
+  cv::Mat_<cv::Vec3d> dots_mm;        ///< NaN where a dot was not found or has no depth
+  cv::Mat_<std::uint8_t> in_contact;  ///< 1 in contact, else 0
+  cv::Mat_<std::uint8_t> states;      ///< DotState of each dot
+  cv::Mat_<cv::Vec2d> slips_mm;       ///< of each dot since the reference, NaN if unknown; empty if
+                                      ///< this frame has no new stick ratio
 
-/// Forces by look-up.
-struct ForceFrame {
-  fingerpad::ShiftResult<double> shift;  ///< mm, of the dots at the contact's edge
-  bool looked_up = false;                ///< false: sensor.json has no curves; forces are empty
-  double flat_area_mm2 = not_known;      ///< of a plate with the same force; needs no curves
-  double normal_n = not_known;           ///< pressing force, >= 0
-  double normal_sd_n = not_known;
-  double disagreement = not_known;  ///< between area and depth, in standard deviations
-  bool beyond_range = false;        ///< some measure exceeds the range of the calibration
-  fingerpad::Point2<double> tangential_n = {not_known, not_known};
-  double moment_n_mm = not_known;  ///< about the normal through the contact's center
-};
-
-struct WrenchFrame {
-  bool present = false;  ///< false: the recording lacks data for the force
-  fingerpad::WrenchResult result;
-  /// Standard deviations of force and moment, N and N mm.
-  std::array<double, 6> sd = {not_known, not_known, not_known, not_known, not_known, not_known};
+  DotState state(int row, int col) const { return static_cast<DotState>(states(row, col)); }
 };
 
 }  // namespace replay

@@ -12,7 +12,9 @@ StickStep::StickStep(cv::Size size, const fingerpad::StickOptions& options) {
   }
 }
 
-FrameDots StickStep::operator()(const DotGrid& dots_px, double time_s) {
+FrameDots StickStep::operator()(const DotGrid& dots_px,
+                                double time_s,
+                                fingerpad::FingertipResult& touch) {
   FrameDots frame;
   frame.dots_px = dots_px;
   frame.dots_mm = cv::Mat_<cv::Vec3d>(dots_px.size(), cv::Vec3d::all(not_known));
@@ -23,16 +25,15 @@ FrameDots StickStep::operator()(const DotGrid& dots_px, double time_s) {
     }
   }
   if (stick_) {
-    StickFrame& stick = frame.stick;
-    stick.result = (*stick_)(dots_px, frame.in_contact, time_s);
-    stick.states.create(dots_px.size());
+    touch.stick = (*stick_)(dots_px, frame.in_contact, time_s);
+    touch.slip.evidence =
+        touch.stick.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
+    frame.states.create(dots_px.size());
     for (int i = 0; i < dots_px.rows; ++i) {
       for (int j = 0; j < dots_px.cols; ++j) {
-        stick.states(i, j) = static_cast<uchar>(stick_->states()(i, j));
+        frame.states(i, j) = static_cast<uchar>(stick_->states()(i, j));
       }
     }
-    stick.evidence =
-        stick.result.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
   }
   return frame;
 }

@@ -18,8 +18,8 @@ class StickStep {
   StickStep(cv::Size size, const fingerpad::StickOptions& options);
 
   /// Takes frames in time order. `time_s` is NaN if unknown. Each dot that is found counts as in
-  /// contact.
-  FrameDots operator()(const DotGrid& dots_px, double time_s);
+  /// contact. Sets the stick ratio of `touch`.
+  FrameDots operator()(const DotGrid& dots_px, double time_s, fingerpad::FingertipResult& touch);
 
  private:
   std::optional<fingerpad::StickRatio<>> stick_;
