@@ -15,6 +15,32 @@ namespace {
 
 constexpr int first_frames = 10;  // a camera's first frames may be dark
 
+/// The mean of green and red, which is the fluid's light, in grey levels of 8 bit.
+cv::Mat_<float> light_of(const cv::Mat& image) {
+  cv::Mat_<float> light;
+  const double unit = image.depth() == CV_16U ? 1.0 / 256 : 1.0;
+  if (image.channels() == 1) {
+    image.convertTo(light, CV_32F, unit);
+    return light;
+  }
+  cv::Mat green, red;
+  cv::extractChannel(image, green, 1);
+  cv::extractChannel(image, red, 2);
+  cv::addWeighted(green, 0.5 * unit, red, 0.5 * unit, 0, light, CV_32F);
+  return light;
+}
+
+/// Empty for a print that cannot be followed: dots too small, or too few that look like a disc.
+std::optional<fingerpad::DotFollower> follower_of(const fingerpad::DotFinder& finder,
+                                                  const cv::Mat& free_frame) {
+  try {
+    return fingerpad::DotFollower(light_of(free_frame), finder.free_px(),
+                                  {.radius_px = finder.pattern().radius_px});
+  } catch (const fingerpad::parameter_error&) {
+    return std::nullopt;
+  }
+}
+
 DotGrid free_dots(const fingerpad::DotFinder& finder) {
   DotGrid dots(static_cast<int>(finder.rows()), static_cast<int>(finder.cols()));
   const auto found = finder.free_px();
@@ -89,9 +115,9 @@ void DotSource::read(const std::filesystem::path& file, int frame_count, cv::Siz
   initial_ = listed_.begin()->second;
 }
 
-void DotSource::follow(fingerpad::DotFinder finder) {
+void DotSource::follow(fingerpad::DotFinder finder, const DotGrid& free) {
   how_ = "found in the frames";
-  initial_ = free_dots(finder);
+  initial_ = free;
   finder_ = std::move(finder);
 }
 
@@ -105,15 +131,24 @@ DotSource::DotSource(const std::filesystem::path& folder,
     finder = finder_of(folder, reference_image, print_of(sensor, reference_depth));
   }
   const bool found = finder && finder->ok();
+  DotGrid free;
+  if (found) {
+    free = free_dots(*finder);
+    follower_ = follower_of(*finder, reference_image);
+    DotGrid followed(free.size());
+    if (follower_ && (*follower_)(light_of(reference_image), followed).ok()) {
+      free = followed;
+    }
+  }
   if (frame_count > 0 && std::filesystem::exists(folder / "dots.csv")) {
     const cv::Size size = sensor.dots ? cv::Size(sensor.dots->cols, sensor.dots->rows) : cv::Size();
     read(folder / "dots.csv", frame_count, size);
-    if (found && count_present(finder->free_px()) > fingerpad::count_present(initial_) &&
-        agree(free_dots(*finder), initial_, finder->pattern().pitch_px)) {
-      initial_ = free_dots(*finder);
+    if (found && fingerpad::count_present(free) > fingerpad::count_present(initial_) &&
+        agree(free, initial_, finder->pattern().pitch_px)) {
+      initial_ = free;
     }
   } else if (found) {
-    follow(std::move(*finder));
+    follow(std::move(*finder), free);
   }
 }
 
@@ -141,15 +176,31 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
                      " frames shows a grid of nine or more dots (describe them by \"dots\" in "
                      "sensor.json, or give their positions in dots.csv)");
   }
-  source.follow(std::move(finder));
+  const DotGrid free = free_dots(finder);
+  source.follow(std::move(finder), free);
   return source;
+}
+
+DotGrid DotSource::found(const cv::Mat& image) {
+  DotGrid dots = no_dots(initial_.size());
+  (void)(*finder_)(image, dots);
+  return dots;
+}
+
+DotGrid DotSource::followed(const cv::Mat& image) {
+  const cv::Mat_<float> light = light_of(image);
+  DotGrid dots = no_dots(initial_.size());
+  if ((*follower_)(light, dots).ok()) {
+    return dots;
+  }
+  const DotGrid rough = found(image);
+  dots = rough.clone();
+  return follower_->restart(light, dots).ok() ? dots : rough;
 }
 
 DotGrid DotSource::of(int frame, const cv::Mat& image) {
   if (finder_) {
-    DotGrid dots = no_dots(initial_.size());
-    (void)(*finder_)(image, dots);
-    return dots;
+    return follower_ ? followed(image) : found(image);
   }
   const auto listed = listed_.find(frame);
   return listed == listed_.end() ? no_dots(initial_.size()) : listed->second.clone();

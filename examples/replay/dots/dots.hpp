@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The printed dots of a recording, frame by frame and in print order. They are read from dots.csv
-// if it exists. Otherwise the library's dot_finder.hpp finds them in the frames, if sensor.json
-// describes the print or the recording is dots-only.
+// if it exists. Otherwise the library's dot_finder.hpp finds them on the free pad and
+// dot_follower.hpp follows them, if sensor.json describes the print. In a dots-only recording the
+// finder finds them in every frame: dots behind an elastic pad need not move like their neighbours.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
@@ -12,6 +13,7 @@
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/dots/dot_finder.hpp"
+#include "fingerpad/dots/dot_follower.hpp"
 #include "replay/dots/grid.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/io/sensor.hpp"
@@ -53,12 +55,15 @@ class DotSource {
  private:
   DotSource() = default;
   void read(const std::filesystem::path& file, int frame_count, cv::Size size);
-  void follow(fingerpad::DotFinder finder);
+  void follow(fingerpad::DotFinder finder, const DotGrid& free);
+  DotGrid found(const cv::Mat& image);
+  DotGrid followed(const cv::Mat& image);
 
   std::string how_ = "none";
   DotGrid initial_;
   std::map<int, DotGrid> listed_;
   std::optional<fingerpad::DotFinder> finder_;
+  std::optional<fingerpad::DotFollower> follower_;
 };
 
 /// The print to find on the free pad: section "dots" of sensor.json, scaled to the pad's median

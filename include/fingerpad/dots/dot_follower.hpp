@@ -93,26 +93,23 @@ class DotFollower {
   }
 
   /// The same, where the dots are expected at `dots_px` (as a DotFinder labels them): a dot that is
-  /// NaN there is expected to have moved like its neighbours since the last frame.
+  /// NaN there is expected to have moved like its neighbours since the free pad.
   template <grid Image, dot_grid Dots>
   DotFollowerResult restart(const Image& image, Dots& dots_px) {
     if (!fits(image, dots_px)) {
       return {};
     }
     for (const Index k : order_) {
-      Mark& m = at(k);
       const Point given = point_of(dots_px, k);
-      m.found = is_plausible(given);
-      m.place = m.found ? given : m.last;
-      m.news = given - m.last;
+      at(k).found = is_plausible(given);
+      at(k).place = at(k).found ? given : at(k).last;
     }
+    place_lost(rounds, true);
     for (const Index k : order_) {
-      if (!at(k).found) {
-        at(k).place = at(k).last + neighbours_news(k);
-      }
       at(k).velocity = {0, 0};
       at(k).last = at(k).place;
     }
+    lost_ = 0;
     return look(as_view(image), dots_px);
   }
 
@@ -130,7 +127,8 @@ class DotFollower {
     bool exists = false;  ///< on the free pad
     bool found = false;   ///< in this frame
     bool visited = false;
-    Point last = missing(), velocity = {0, 0};
+    bool likely = false;  ///< found but for its shape, which lost neighbours may spoil
+    Point free = missing(), last = missing(), velocity = {0, 0};
     Point place = missing();  ///< expected, then found
     Point expected = missing();
     Point news = {0, 0};  ///< place less what was expected
@@ -233,7 +231,7 @@ class DotFollower {
         const detail::DiscFit fit = locator_.fit_shape(image, given, map, edge_px, free_edge);
         Mark& m = at(k);
         m.exists = fit.good && norm(fit.center - given) < options_.radius_px;
-        m.place = m.last = m.exists ? fit.center : missing();
+        m.place = m.last = m.free = m.exists ? fit.center : missing();
         m.slope = fit.slope;
         m.light = fit.light;
         m.contrast = fit.contrast;
@@ -321,32 +319,59 @@ class DotFollower {
     return count > 0 ? sum / count : sum;
   }
 
+  /// Puts lost dots where they are displaced from the free pad like the mean of their neighbours.
+  void place_lost(int sweeps, bool likely) {
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      for (const Index k : order_) {
+        Mark& m = at(k);
+        if (!m.found && (likely || !m.likely)) {
+          Point sum = {0, 0};
+          double count = 0;
+          for (const Index step : around()) {
+            if (at(k + step).exists) {
+              sum += at(k + step).place - at(k + step).free;
+              count += 1;
+            }
+          }
+          m.place = count > 0 ? m.free + sum / count : m.place;
+        }
+      }
+    }
+  }
+
   template <class View, class Dots>
   DotFollowerResult look(const View& image, Dots& dots_px) {
     for (const Index k : order_) {
       at(k).expected = at(k).place;
-      at(k).visited = at(k).found = false;
+      at(k).visited = at(k).found = at(k).likely = false;
       at(k).news = {0, 0};
     }
-    // The lost are tried again beside those found, with a wide look if they are more than in the
-    // last frame.
-    constexpr int rounds = 5;
+    // The lost are tried again where those found put them, as long as that finds any; with a wide
+    // look if they are more than in the last frame.
     if (noise_ == 0) {
       learn_noise(image);
     }
     auto lost = Index(order_.size());
-    for (int round = 0; round < rounds && lost > (round < 2 ? 0 : lost_); ++round) {
+    Index before = lost + 1;
+    for (int round = 0; round < rounds && lost > 0; ++round) {
+      const bool wide = round > 1 && lost > lost_;
+      if (round > 1 && lost == before && !(wide && round == 2)) {
+        break;
+      }
+      before = lost;
       lost = 0;
+      place_lost(round, false);
       for (const Index k : order_) {
         Mark& m = at(k);
         if (!m.found) {
-          m.place = m.place - m.news;
+          m.news = round == 0 ? neighbours_news(k) : m.place - m.expected;
+          m.place = m.expected;
           m.visited = false;
-          m.news = neighbours_news(k);
-          lost += locate(image, k, round > 1) ? 0 : 1;
+          lost += locate(image, k, wide) ? 0 : 1;
         }
       }
     }
+    place_lost(rounds, true);
     for (const Index k : order_) {  // with the whole lattice where it was guessed
       if (at(k).found && at(k).surprise_px > 0.25) {
         (void)locate(image, k, false);
@@ -372,6 +397,7 @@ class DotFollower {
       m.visited = m.found = false;
     }
   }
+
   /// Half of the dots are needed.
   void keep_noise() {
     std::size_t count = 0;
@@ -401,15 +427,16 @@ class DotFollower {
     const double contrast = fit.contrast / m.contrast;
     m.residual_ratio = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
     m.surprise_px = norm(fit.center - guess);
-    m.found = fit.good && contrast > least_contrast && contrast < most_contrast &&
-              m.residual_ratio < most_residual * noise_ && m.surprise_px < reach;
-    if (m.found) {
+    m.likely =
+        fit.good && contrast > least_contrast && contrast < most_contrast && m.surprise_px < reach;
+    m.found = m.likely && m.residual_ratio < most_residual * noise_;
+    if (m.found && is_finite(noise_)) {
       m.news = m.news + (fit.center - guess);
       m.slope = fit.slope;
       m.light = fit.light;
       m.sd_px = std::sqrt(squared_norm(fit.sd_px) / 2 + square(bias_px));
     }
-    m.place = m.found ? fit.center : guess;
+    m.place = m.likely ? fit.center : guess;
     m.visited = true;
     return m.found;
   }
@@ -538,6 +565,7 @@ class DotFollower {
 
   Index lost_ = 0;    ///< dots, in the last good frame
   double noise_ = 0;  ///< residuals of the frames to that of the free pad's picture; 0: unknown
+  static constexpr int rounds = 5;            ///< in which lost dots are tried again
   static constexpr double max_off = 0.45;     ///< pitches
   static constexpr double bias_px = 0.01;     ///< rms of the centers in pictures without noise
   static constexpr double max_strange = 0.1;  ///< of the places beyond the border
