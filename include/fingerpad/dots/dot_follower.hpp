@@ -104,7 +104,7 @@ class DotFollower {
       at(k).found = is_plausible(given);
       at(k).place = at(k).found ? given : at(k).last;
     }
-    place_lost(rounds, true);
+    place_lost(tries, true);
     for (const Index k : order_) {
       at(k).velocity = {0, 0};
       at(k).last = at(k).place;
@@ -353,7 +353,7 @@ class DotFollower {
     }
     auto lost = Index(order_.size());
     Index before = lost + 1;
-    for (int round = 0; round < rounds && lost > 0; ++round) {
+    for (int round = 0; round < tries && lost > 0; ++round) {
       const bool wide = round > 1 && lost > lost_;
       if (round > 1 && lost == before && !(wide && round == 2)) {
         break;
@@ -371,7 +371,7 @@ class DotFollower {
         }
       }
     }
-    place_lost(rounds, true);
+    place_lost(tries, true);
     for (const Index k : order_) {  // with the whole lattice where it was guessed
       if (at(k).found && at(k).surprise_px > 0.25) {
         (void)locate(image, k, false);
@@ -565,7 +565,7 @@ class DotFollower {
 
   Index lost_ = 0;    ///< dots, in the last good frame
   double noise_ = 0;  ///< residuals of the frames to that of the free pad's picture; 0: unknown
-  static constexpr int rounds = 5;            ///< in which lost dots are tried again
+  static constexpr int tries = 5;             ///< in which lost dots are tried again
   static constexpr double max_off = 0.45;     ///< pitches
   static constexpr double bias_px = 0.01;     ///< rms of the centers in pictures without noise
   static constexpr double max_strange = 0.1;  ///< of the places beyond the border
