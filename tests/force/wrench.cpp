@@ -42,13 +42,14 @@ const RimScene& scene(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("wrench: whatever touches, to a share of the largest", "[wrench]") {
+TEST_CASE("wrench: whatever touches, to a share of the largest, and its standard deviations hold",
+          "[wrench]") {
   struct Case {
     bool loose_rim;
     double noise_px;
     std::array<double, 4> mean;  // of F_xy, F_z, M_xy, M_z
   };
-  // measured: .0012 .0037 .0084 .0025, .0039 .0076 .0131 .0026, .0015 .0030 .0044 .0009
+  int all = 0, within = 0, beyond_five = 0;  // of the loose rim
   for (const Case& c : {Case{false, 0.06, {0.003, 0.008, 0.015, 0.005}},
                         Case{true, 0.06, {0.008, 0.015, 0.025, 0.005}},
                         Case{true, 0.02, {0.003, 0.006, 0.009, 0.002}}}) {
@@ -71,27 +72,8 @@ TEST_CASE("wrench: whatever touches, to a share of the largest", "[wrench]") {
             ++count[part];
           }
         }
-      }
-    }
-    for (std::size_t part = 0; part < 4; ++part) {
-      CAPTURE(c.loose_rim, c.noise_px, part);
-      CHECK(sum[part] / count[part] < c.mean[part]);
-    }
-  }
-}
-
-TEST_CASE("wrench: its standard deviations hold", "[wrench]") {
-  int all = 0, within = 0, beyond_five = 0;
-  for (const RimScene& s : rim_scenes()) {
-    if (s.name == "rubber") {
-      continue;
-    }
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      SeenRim rim(s, SeenRim::options_of(s, true), 0.06, seed);
-      for (std::size_t k = 1; k < s.frames.size(); ++k) {
-        const auto result = rim.fit(k);
         const auto found = parts(result);
-        for (std::size_t part = 0; part < 6; ++part) {
+        for (std::size_t part = 0; c.loose_rim && part < 6; ++part) {
           const auto i = static_cast<Eigen::Index>(part);
           const double off = std::fabs(found[part] - s.frames[k].load[part]);
           const double sd = std::sqrt(result.covariance(i, i));
@@ -101,10 +83,14 @@ TEST_CASE("wrench: its standard deviations hold", "[wrench]") {
         }
       }
     }
+    for (std::size_t part = 0; part < 4; ++part) {
+      CAPTURE(c.loose_rim, c.noise_px, part, sum[part] / count[part]);
+      CHECK(sum[part] / count[part] < c.mean[part]);
+    }
   }
   CAPTURE(all, within, beyond_five);
   CHECK(within > 0.9 * all);
-  CHECK(beyond_five < 0.003 * all);
+  CHECK(beyond_five == 0);
 }
 
 TEST_CASE("wrench: another rubber needs its law", "[wrench]") {
@@ -123,8 +109,7 @@ TEST_CASE("wrench: another rubber needs its law", "[wrench]") {
   CHECK(worst_along(0) > 0.02);
 }
 
-TEST_CASE("wrench: lost dots, wrong labels and a print that is shifted",
-          "[wrench]") {
+TEST_CASE("wrench: lost dots, wrong labels and a print that is shifted", "[wrench]") {
   const RimScene& s = scene("drag");
   SeenRim rim(s, SeenRim::options_of(s, true), 0.06, 7);
   const auto whole = rim.fit(2);
@@ -189,8 +174,7 @@ TEST_CASE("wrench: a scene that is turned", "[wrench]") {
   CHECK(std::fabs(after.moment_n_mm.z - before.moment_n_mm.z) < 0.05 * scale);
 }
 
-TEST_CASE("wrench: forces grow with the modulus at the same stretch",
-          "[wrench]") {
+TEST_CASE("wrench: forces grow with the modulus at the same stretch", "[wrench]") {
   const RimScene& s = scene("mix");
   auto options = SeenRim::options_of(s, true);
   SeenRim rim(s, options, 0.02, 3);
@@ -232,8 +216,7 @@ TEST_CASE("wrench: bad parameters are refused by name", "[wrench]") {
   CHECK(said({}) == "accepted");
   CHECK(said({.modulus_n_per_mm = 0}) ==
         "WrenchOptions: modulus_n_per_mm = 0, must be finite and > 0");
-  CHECK(said({.reach_share = 0.9}) ==
-        "WrenchOptions: reach_share = 0.9, must be in (0, 0.7]");
+  CHECK(said({.reach_share = 0.9}) == "WrenchOptions: reach_share = 0.9, must be in (0, 0.7]");
   CHECK(said({.max_marks = 3}) == "WrenchOptions: max_marks = 3, must be in [20, 100000]");
   CHECK(said({.cap = {.height_mm = 0}}) == "StressFreeCap: height_mm = 0, must be finite and > 0");
 }

@@ -39,8 +39,8 @@ struct Frame {
   std::vector<Point2<double>> seen(const test::RimFrame& frame) const {
     test::Random random(3);
     std::vector<Point2<double>> all;
-    for (const auto& dot : frame.dots_mm) {
-      const auto at = pixel_of(scene.camera(), dot);
+    for (std::size_t k = 0; k < frame.dots_mm.size(); k += 2) {  // half of them are enough
+      const auto at = pixel_of(scene.camera(), frame.dots_mm[k]);
       all.push_back({at.x + 0.02 * random.normal(), at.y + 0.02 * random.normal()});
     }
     return all;
@@ -91,7 +91,7 @@ const std::vector<WrenchMistake> wrench_mistakes = {
      "not solved"},
     {"dots as (0, 0) where they are lost",
      [](Frame& f) {
-       std::fill(f.px.begin(), f.px.begin() + 90, Point2<double>{0, 0});
+       std::fill(f.px.begin(), f.px.begin() + 45, Point2<double>{0, 0});
      },
      "not solved"},
     {"dots of a picture of another size",

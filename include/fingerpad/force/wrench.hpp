@@ -99,7 +99,7 @@ class Wrench {
         free_(options.cap),
         annulus_(options.cap,
                  {.reach_mm = options.reach_share * options.cap.base_radius_mm,
-                  .offset_harmonics = options.loose_rim ? 6 : -1}) {
+                  .offset_harmonics = options.loose_rim ? 5 : -1}) {
     require(camera);
     const std::size_t n = annulus_.parameters(), width = annulus_.width();
     const auto count = static_cast<Eigen::Index>(n);
