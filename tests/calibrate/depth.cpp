@@ -225,7 +225,8 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
   }
 }
 
-TEST_CASE("calibration of depth: errors compensate to microns of depth, as predicted") {
+TEST_CASE("calibration of depth: errors compensate to microns of depth, as predicted",
+          "[figures]") {
   const Sensor sensor;
   constexpr int trials = 200;
   const double grey_noise = 0.034;

@@ -8,14 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -584,38 +582,6 @@ TEST_CASE("samples given twice count twice", "[calibrate][force]") {
     CHECK(b.curve.coefficients[k] == Approx(a.curve.coefficients[k]).epsilon(1e-12));
     // the same sum of squares over 58 instead of 28 degrees of freedom
     CHECK(b.curve.covariance[k][k] == Approx(a.curve.covariance[k][k] * 28 / 58).epsilon(1e-12));
-  }
-}
-
-TEST_CASE("the covariance is that which the forces' errors carry into the parameters",
-          "[calibrate][force]") {
-  // Parameters and their derivatives by all forces in one pass.
-  constexpr int count = 10;
-  using S = Dual<count>;
-  Random random(11);
-  const Samples plain = measured({}, count, {}, random);
-  std::vector<ForceSample<S>> samples;
-  for (int k = 0; k < count; ++k) {
-    const Sample& s = plain[static_cast<std::size_t>(k)];
-    ForceSample<S> dual;
-    dual.measure = S(s.measure);
-    dual.displacement_mm = {S(s.displacement_mm.x), S(s.displacement_mm.y)};
-    dual.rotation_rad = S(s.rotation_rad);
-    dual.normal_force_n = S::parameter(s.normal_force_n, static_cast<std::size_t>(k));
-    samples.push_back(dual);
-  }
-  const CurveOptions options{.through_zero = false};
-  const auto dual = fit_normal_force(all(samples), options);
-  const auto fit = fit_normal_force(all(plain), options);
-  for (std::size_t i = 0; i <= 2; ++i) {
-    CHECK(dual.curve.coefficients[i].value == Approx(fit.curve.coefficients[i]).epsilon(1e-12));
-    for (std::size_t j = 0; j <= 2; ++j) {
-      const auto &by_i = dual.curve.coefficients[i].slopes,
-                 &by_j = dual.curve.coefficients[j].slopes;
-      const double carried = std::inner_product(by_i.begin(), by_i.end(), by_j.begin(), 0.0);
-      CHECK(fit.curve.covariance[i][j] ==
-            Approx(square(fit.curve.residual_sd_n) * carried).epsilon(1e-9));
-    }
   }
 }
 

@@ -264,7 +264,7 @@ TEST_CASE("the light at the rim is that of all bands together", "[mistakes]") {
   }
 }
 
-TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes]") {
+TEST_CASE("a depth that is ok lies in [0, max_depth_mm]", "[mistakes][figures]") {
   // absorption constants and references at the limits of acceptance, with colours of all kinds
   test::Random random(11);
   for (int k = 0; k < 40; ++k) {

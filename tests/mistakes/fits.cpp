@@ -462,7 +462,7 @@ TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
   check(mistakes, said_of_preslip);
 }
 
-TEST_CASE("mistakes: printed dots in pictures", "[mistakes]") {
+TEST_CASE("mistakes: printed dots in pictures", "[mistakes][figures]") {
   const Mistake<Pictures> mistakes[] = {
       {"none", [](Pictures&) {}, "right"},
       {"now transposed", [](Pictures& p) { cv::transpose(p.now, p.now); }, "refused"},

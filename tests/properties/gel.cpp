@@ -285,7 +285,7 @@ TEST_CASE("gel contact: other lamps are told from a large contact", "[gel_contac
   });
 }
 
-TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide]") {
+TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     SlideOptions options;
@@ -299,7 +299,8 @@ TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide]") {
   });
 }
 
-TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do", "[gel_slide]") {
+TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do",
+          "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 1.05 * gel.pull_mm()), {});
@@ -314,7 +315,7 @@ TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do"
 }
 
 TEST_CASE("gel slide: a slide is as long as the ball's way past the gel of its dent",
-          "[gel_slide]") {
+          "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 2.5 * gel.pull_mm()), {});
@@ -328,7 +329,7 @@ TEST_CASE("gel slide: a slide is as long as the ball's way past the gel of its d
   });
 }
 
-TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide]") {
+TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     std::vector<Step> steps;
@@ -341,7 +342,8 @@ TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide]")
   });
 }
 
-TEST_CASE("gel slide: a mask that is true everywhere gives no false warning", "[gel_slide]") {
+TEST_CASE("gel slide: a mask that is true everywhere gives no false warning",
+          "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 0.8 * gel.pull_mm()), {}, true);
@@ -350,7 +352,7 @@ TEST_CASE("gel slide: a mask that is true everywhere gives no false warning", "[
   });
 }
 
-TEST_CASE("gel slide: what is held does not wander", "[gel_slide]") {
+TEST_CASE("gel slide: what is held does not wander", "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const auto at = 0.3 * gel.pull_mm() * any_direction();
@@ -363,7 +365,8 @@ TEST_CASE("gel slide: what is held does not wander", "[gel_slide]") {
   });
 }
 
-TEST_CASE("gel slide: a gel that springs back is told, one that is pulled is not", "[gel_slide]") {
+TEST_CASE("gel slide: a gel that springs back is told, one that is pulled is not",
+          "[gel_slide][figures]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     auto steps = dragged(gel, 0.9 * gel.pull_mm());

@@ -258,7 +258,8 @@ TEST_CASE("a stick ratio is a value", "[stick_ratio][law]") {
   });
 }
 
-TEST_CASE("dots lost at random change the ratio by the sampling error", "[stick_ratio][law]") {
+TEST_CASE("dots lost at random change the ratio by the sampling error",
+          "[stick_ratio][law][figures]") {
   // With m of n dots left, the ratio p of these has the error
   //   sqrt(p (1 - p) / m (n - m) / (n - 1)).
   // Dots at the edge of the stick region are averaged with others and some change sides: up to half

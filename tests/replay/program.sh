@@ -1,18 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-# program.sh RECORDING REPLAY [RENDER SLIP_TRIALS]: the programs as a user meets them. Exit statuses,
+# program.sh RECORDING REPLAY RENDER SLIP_TRIALS: the programs as a user meets them. Exit statuses,
 # one line on standard error, nothing left behind; the recording is rendered again byte for byte;
 # the depth is as near the truth as docs/depth/depth.md says; labels that nobody knows are refused.
-# Without RENDER only what sanitizers can tell more of: a few frames, and no figures.
 set -uo pipefail
 export LC_ALL=C
 recording=$1
 replay=$2
-render=${3:-}
-slip_trials=${4:-}
-frames=4:7
-[[ -n $render ]] && frames=0:7
+render=$3
+slip_trials=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failures=0
@@ -104,17 +101,12 @@ accuracy() {
   awk -v inner="$2" -v outer="$3" '{ exit !($2 <= inner && $3 <= outer) }' <<<"$errors" ||
     fail "$1 px are less accurate than that"
 }
-if [[ -n $render ]]; then
-  rendered
-  accuracy 29 0.030 0.040
-  accuracy 1 0.7 0.7
-else
-  "$replay" "$recording" --out "$work/out" --raw --no-pictures --frames "$frames" >/dev/null ||
-    fail "replay --raw"
-fi
+rendered
+accuracy 29 0.030 0.040
+accuracy 1 0.7 0.7
 
-"$replay" "$recording" --out "$work/out" --frames "$frames" >"$work/table" || fail "replay with pictures"
-grep -q "^frames  *$((7 - ${frames%:*}))$" "$work/table" || fail "the printed table: $(cat "$work/table")"
+"$replay" "$recording" --out "$work/out" --frames 0:7 >"$work/table" || fail "replay with pictures"
+grep -q "^frames  *7$" "$work/table" || fail "the printed table: $(cat "$work/table")"
 grep -Eq "^mean error   0\.[0-9]+ N normal, 0\.0[0-9] N tangential, 0\.[0-9]+ N mm moment" \
   "$work/table" || fail "the printed errors of the look-up: $(cat "$work/table")"
 for file in frames.csv pictures/{montage,stick_ratio,forces,wrench}.png \
@@ -141,45 +133,41 @@ done
 
 # A disk that is full, in the first picture or in a later one; a limit on the size of a file, to fail
 # in the same call.
-if [[ -n $render ]]; then
-  rm -rf "$work/out"
-  for kib in 60 400; do
-    printf '#!/usr/bin/env bash\ntrap "" XFSZ\nulimit -f %d\nexec "%s" "$@"\n' "$kib" "$replay" \
-      >"$work/full_disk"
-    chmod +x "$work/full_disk"
-    replay=$work/full_disk refuses 1 "pictures/.*: cannot be written" \
-      "$recording" --out "$work/out" --frames 4:6
-  done
-fi
+rm -rf "$work/out"
+for kib in 60 400; do
+  printf '#!/usr/bin/env bash\ntrap "" XFSZ\nulimit -f %d\nexec "%s" "$@"\n' "$kib" "$replay" \
+    >"$work/full_disk"
+  chmod +x "$work/full_disk"
+  replay=$work/full_disk refuses 1 "pictures/.*: cannot be written" \
+    "$recording" --out "$work/out" --frames 4:6
+done
 
 # Labelled trials: success is a hold, fail a slip; another label is no slip, but refused.
-if [[ -n $slip_trials ]]; then
-  for object in disc rod; do
-    for trial in 1 2; do
-      mkdir -p "$work/trials/$object/$trial"
-      cp "$recording"/frames/00000[0-3].png "$work/trials/$object/$trial"
-    done
-    printf '5 success 1 0 3 2 1\n5 fail 0 0 3 2 2\n' >"$work/trials/${object}_result.dat"
+for object in disc rod; do
+  for trial in 1 2; do
+    mkdir -p "$work/trials/$object/$trial"
+    cp "$recording"/frames/00000[0-3].png "$work/trials/$object/$trial"
   done
-  "$slip_trials" "$work/trials" >"$work/table" || fail "slip_trials"
-  grep -q "^hold  1 " "$work/table" && grep -q "^slip  2 " "$work/table" ||
-    fail "slip_trials does not read success and fail: $(cat "$work/table")"
-  # equal recordings: half of the pairs are in order, of each object and of all
-  [[ $(grep -cE "^  rod +0\.500 " "$work/table") == $(grep -cE "^  object +AUC" "$work/table") ]] ||
-    fail "slip_trials does not tell the AUC per object: $(cat "$work/table")"
-  printf '5 slipped 0 0 3 2 2\n' >>"$work/trials/rod_result.dat"
-  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
-  [[ $? == 1 ]] && grep -q 'rod_result.dat: unknown label "slipped"' "$work/stderr" ||
-    fail "slip_trials on an unknown label: $(cat "$work/stderr")"
-  printf '5 success\n' >"$work/trials/rod_result.dat"
-  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
-  [[ $? == 1 ]] && grep -q 'rod_result.dat: line "5 success" names no trial' "$work/stderr" ||
-    fail "slip_trials on a line without a trial"
-  rm "$work"/trials/*_result.dat
-  "$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
-  [[ $? == 1 ]] && grep -q 'trials: unknown label "disc"' "$work/stderr" ||
-    fail "slip_trials on a folder that is no label"
-fi
+  printf '5 success 1 0 3 2 1\n5 fail 0 0 3 2 2\n' >"$work/trials/${object}_result.dat"
+done
+"$slip_trials" "$work/trials" >"$work/table" || fail "slip_trials"
+grep -q "^hold  1 " "$work/table" && grep -q "^slip  2 " "$work/table" ||
+  fail "slip_trials does not read success and fail: $(cat "$work/table")"
+# equal recordings: half of the pairs are in order, of each object and of all
+[[ $(grep -cE "^  rod +0\.500 " "$work/table") == $(grep -cE "^  object +AUC" "$work/table") ]] ||
+  fail "slip_trials does not tell the AUC per object: $(cat "$work/table")"
+printf '5 slipped 0 0 3 2 2\n' >>"$work/trials/rod_result.dat"
+"$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+[[ $? == 1 ]] && grep -q 'rod_result.dat: unknown label "slipped"' "$work/stderr" ||
+  fail "slip_trials on an unknown label: $(cat "$work/stderr")"
+printf '5 success\n' >"$work/trials/rod_result.dat"
+"$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+[[ $? == 1 ]] && grep -q 'rod_result.dat: line "5 success" names no trial' "$work/stderr" ||
+  fail "slip_trials on a line without a trial"
+rm "$work"/trials/*_result.dat
+"$slip_trials" "$work/trials" >/dev/null 2>"$work/stderr"
+[[ $? == 1 ]] && grep -q 'trials: unknown label "disc"' "$work/stderr" ||
+  fail "slip_trials on a folder that is no label"
 
 # What is wrong with a recording, before anything is computed.
 "$replay" "$recording" --check >"$work/said" || fail "the bundled recording: $(cat "$work/said")"

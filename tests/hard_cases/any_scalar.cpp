@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Every calibration that does not solve for forces or fluid (whose own tests do the same), in float
-// and in dual numbers: the same result, and the derivatives of finite differences.
+// Every calibration that does not solve for the fluid (whose own tests do the same), in float and
+// in dual numbers: the same result, and the derivatives of finite differences.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
+#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
@@ -208,4 +212,33 @@ TEST_CASE("calibrations: in float, and with derivatives") {
   check("noise of taxels", TaxelsByGain(), 1e-3);
   check("free pad", FreePadByPitch(), 2e-2);
   check("pre-slip", PreslipThresholds(), 1e-6, false);
+}
+
+TEST_CASE("a look-up's covariance is that which the forces' errors carry into its parameters",
+          "[calibrate][force]") {
+  constexpr int count = 10;
+  using S = Dual<count>;
+  std::vector<ForceSample<double>> plain(count);
+  std::vector<ForceSample<S>> samples(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double m = 0.3 + 0.5 * static_cast<double>(k);
+    plain[k].measure = m;
+    plain[k].normal_force_n = m * (2 + 0.3 * m) + 0.05 * std::cos(5 * m);
+    samples[k].measure = S(m);
+    samples[k].normal_force_n = S::parameter(plain[k].normal_force_n, k);
+  }
+  const CurveOptions options{.through_zero = false};
+  const auto dual = fit_normal_force(std::span<const ForceSample<S>>(samples), options);
+  const auto fit = fit_normal_force(std::span<const ForceSample<double>>(plain), options);
+  for (std::size_t i = 0; i <= 2; ++i) {
+    const auto& by_i = dual.curve.coefficients[i];
+    CHECK(by_i.value == Approx(fit.curve.coefficients[i]).epsilon(1e-12));
+    for (std::size_t j = 0; j <= 2; ++j) {
+      const auto& by_j = dual.curve.coefficients[j];
+      const double carried =
+          std::inner_product(by_i.slopes.begin(), by_i.slopes.end(), by_j.slopes.begin(), 0.0);
+      CHECK(fit.curve.covariance[i][j] ==
+            Approx(square(fit.curve.residual_sd_n) * carried).epsilon(1e-9));
+    }
+  }
 }
