@@ -118,7 +118,9 @@ void bind_motion_result(py::module_& module) {
       .def_property_readonly("position_mm", [](const Motion& r) { return as_tuple(r.position_mm); })
       .def_property_readonly("displacement_mm",
                              [](const Motion& r) { return as_tuple(r.displacement_mm); })
-      .def_readonly("residual_rms_mm", &Motion::residual_rms_mm);
+      .def_readonly("residual_rms_mm", &Motion::residual_rms_mm)
+      .def_readonly("position_sd_mm", &Motion::position_sd_mm)
+      .def_readonly("rotation_sd_rad", &Motion::rotation_sd_rad);
 }
 
 void bind_slip_result(py::module_& module) {

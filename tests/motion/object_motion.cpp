@@ -222,6 +222,37 @@ TEST_CASE("object motion: statuses") {
   }
 }
 
+TEST_CASE("object motion: standard deviations cover the error of a roll, and are no wider",
+          "[noise]") {
+  const test::RollingBall ball{.rows = 11, .cols = 31, .patch_mm = 5};
+  const Flags none(11, 31, 0);
+  int known = 0, beyond = 0;
+  double error_sq = 0, sd_sq = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    test::Gauss gauss(seed);
+    ObjectMotion<> motion(11, 31);
+    test::Rolling roll(ball, -10, 0.3);
+    auto result =
+        motion(noisy(roll.dots, roll.contact, gauss, 0.005, 0.025), roll.contact, none, 0.025);
+    CHECK(result.rotation_sd_rad == 0);  // it begins
+    for (int k = 1; k <= 40; ++k) {
+      roll.step(-10 + 20.0 * k / 40, 0.3);
+      result =
+          motion(noisy(roll.dots, roll.contact, gauss, 0.005, 0.025), roll.contact, none, 0.025);
+      const double sd_deg = result.rotation_sd_rad * 180 / 3.14159265358979;
+      const double error = error_deg(result.pose.rotation, roll.pose.rotation);
+      ++known;
+      beyond += error > 2 * sd_deg ? 1 : 0;
+      error_sq += square(error);
+      sd_sq += square(sd_deg);
+    }
+  }
+  CHECK(20 * beyond <= known);
+  CHECK(sd_sq < square(3.0) * error_sq);  // each dot errs alone here, not four in common
+  const auto unknown = ObjectMotion<>(11, 31)(test::Rolling(ball, 0, 0).dots, none);
+  CHECK(!is_finite(unknown.rotation_sd_rad));
+}
+
 TEST_CASE("object motion: a pose whose residual exceeds the noise is doubtful") {
   const test::RollingBall ball{.rows = 11, .cols = 11, .patch_mm = 6};
   const Flags none(11, 11, 0);

@@ -138,9 +138,10 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::getline(table, line);
   CHECK(line ==
         "frame,time_s,depth_status,pad_changed,valid_share,depth_mean_mm,depth_max_mm,"
-        "contact_status,contact_area_mm2,contact_depth_mm,contact_center_x_mm,contact_center_y_mm,"
+        "contact_status,contact_area_mm2,contact_area_sd_mm2,contact_depth_mm,contact_center_x_mm,"
+        "contact_center_y_mm,"
         "motion_status,object,object_x_mm,object_y_mm,object_z_mm,"
-        "rotation_x_rad,rotation_y_rad,rotation_z_rad,"
+        "rotation_x_rad,rotation_y_rad,rotation_z_rad,object_sd_mm,rotation_sd_rad,"
         "slip_status,dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"
         "shift_x_mm,shift_y_mm,shift_rad,look_up_status,"
         "flat_area_mm2,normal_force_n,normal_force_sd_n,tangential_force_x_n,tangential_force_y_n,"
@@ -152,16 +153,19 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
   // the free pad: without contact it has no position and no object
-  CHECK(line.find(",ok,0.000000,,,,no contact,,,,,,,,no contact,") != std::string::npos);
+  CHECK(line.find(",ok,0.000000,0.000000,,,,no contact,,,,,,,,,,no contact,") != std::string::npos);
   CHECK(std::count(line.begin(), line.end(), ',') == columns);
   std::getline(table, line);
   CHECK(line.substr(0, 3) == "1,,");
+  // a small contact, whose outline is not sure; nor are enough dots within it
+  CHECK(line.find(",edge in doubt,") != std::string::npos);
+  CHECK(line.find(",no pose,,,,,,,,,,") != std::string::npos);
+  std::getline(table, line);
+  CHECK(line.substr(0, 7) == "2,0.25,");
   CHECK(ends_with(line, ",no pressure,,,,,,,,,,,,"));  // a refusal has neither force nor its sd
   line.resize(line.size() - 12);
   CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every other column is filled
   CHECK(std::count(line.begin(), line.end(), ',') == columns - 12);
-  std::getline(table, line);
-  CHECK(line.substr(0, 7) == "2,0.25,");
   CHECK_FALSE(std::getline(table, line));
   CHECK(fs::exists(work.out() / "depth" / "000002.tiff"));
   CHECK(fs::exists(work.out() / "contact" / "000002.png"));

@@ -27,6 +27,15 @@ Text depth_status(const Row& row) {
   return !row.has_depth ? "" : name_of(row.touch.depth.ok() ? light : row.touch.depth.status);
 }
 
+Text contact_status(const Row& row) {
+  const auto& touch = row.touch;
+  return !row.has_depth                                         ? ""
+         : !touch.contact.ok()                                  ? name_of(touch.contact.status)
+         : touch.contact_in_doubt && touch.contact.in_contact() ? "edge in doubt"
+         : touch.contact_in_doubt                               ? "force without region"
+                                                                : "ok";
+}
+
 Text look_up_status(const Row& row) {
   const auto status = row.touch.normal.status;
   return !row.has_curves                              ? ""
@@ -83,10 +92,11 @@ constexpr Column columns[] = {
     {"valid_share", [](const Row& r) { return cell_of(r.valid_share); }},
     {"depth_mean_mm", [](const Row& r) { return cell_of(r.depth_mean_mm); }},
     {"depth_max_mm", [](const Row& r) { return cell_of(r.depth_max_mm); }},
-    {"contact_status",
-     [](const Row& r) { return Text(r.has_depth ? name_of(r.touch.contact.status) : ""); }},
+    {"contact_status", contact_status},
     {"contact_area_mm2",
      [](const Row& r) { return cell_if(r.touch.contact.ok(), r.touch.contact.area_mm2); }},
+    {"contact_area_sd_mm2",
+     [](const Row& r) { return cell_if(r.touch.contact.ok(), r.touch.contact.area_sd_mm2); }},
     {"contact_depth_mm", [](const Row& r) { return cell_of(r.touch.contact.depth_mm); }},
     {"contact_center_x_mm", [](const Row& r) { return cell_of(r.touch.contact.center_mm.x); }},
     {"contact_center_y_mm", [](const Row& r) { return cell_of(r.touch.contact.center_mm.y); }},
@@ -107,6 +117,8 @@ constexpr Column columns[] = {
      [](const Row& r) { return cell_if(r.touch.motion.has_pose(), r.touch.motion.angles.y_rad); }},
     {"rotation_z_rad",
      [](const Row& r) { return cell_if(r.touch.motion.has_pose(), r.touch.motion.angles.z_rad); }},
+    {"object_sd_mm", [](const Row& r) { return cell_of(r.touch.motion.position_sd_mm); }},
+    {"rotation_sd_rad", [](const Row& r) { return cell_of(r.touch.motion.rotation_sd_rad); }},
     {"slip_status",
      [](const Row& r) {
        return Text(!r.has_dots               ? ""

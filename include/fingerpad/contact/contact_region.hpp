@@ -74,6 +74,10 @@ struct [[nodiscard]] ContactResult {
   Index unknown_px = 0;  ///< pixels without depth, or with too few neighbours to decide
   Index regions = 0;     ///< connected parts of the contact
   double area_mm2 = 0;   ///< of the contact, at its depth, projected on the plate
+  /// Standard deviation of the area, from where the edge may lie: anywhere within the touching gap,
+  /// and moved by the noise of the free membrane's curvature. Where the edge is not placed,
+  /// anywhere within the ring's radius.
+  double area_sd_mm2 = 0;
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
@@ -163,7 +167,10 @@ class ContactRegion {
     };
     result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
       if (test_.places_edge) {
-        place_edge(depth, region);
+        result.area_sd_mm2 += place_edge(depth, region);
+      } else {
+        result.area_sd_mm2 += perimeter_mm(region, eye_.pitch_mm) * test_.ring.radius_px *
+                              eye_.pitch_mm / std::numbers::sqrt3;
       }
     });
     write(marks, to);
@@ -265,6 +272,11 @@ class ContactRegion {
     const detail::NormalEquations<double, 3> equations(sums.corner<3>());
     const auto plane = equations.good ? equations.solve(sums.column<3>(3))
                                       : std::array<double, 3>{2 * test_.threshold_per_mm, 0, 0};
+    double sum_sq = sums(3, 3);  // of the deviations from it
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum_sq -= plane[k] * sums(k, 3);
+    }
+    free_sd_per_mm_ = std::sqrt((std::max)(sum_sq, 0.0) / sums(0, 0));
     for (Index i = reach.first_row; i < reach.last_row; ++i) {
       const S first = S(plane[0] + plane[1] * static_cast<double>(i)), step = S(plane[2]);
       S* to = image_.view(free_.data()).row(i);
@@ -274,10 +286,17 @@ class ContactRegion {
     }
   }
 
+  /// Of a round region of the same area.
+  double perimeter_mm(const detail::Regions::Region& region, double pixel_mm) const {
+    return 2 * pixel_mm *
+           std::sqrt(std::numbers::pi * eye_.pixel_aspect * static_cast<double>(region.pixels()));
+  }
+
   /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Its
   /// properties come from one to two thousand of its pixels, or from all if there are fewer.
+  /// Returns the standard deviation of its area in mm^2.
   template <class View>
-  void place_edge(const View& depth_mm, detail::Regions::Region& region) {
+  double place_edge(const View& depth_mm, detail::Regions::Region& region) {
     samples_.clear();
     double depth = 0, outside = 0;
     for (Index k = region.begin; k < region.end; k += region.pixels() / most + 1) {
@@ -306,6 +325,17 @@ class ContactRegion {
     };
     regions_.grow(region, (std::max)(ring_rows_, ring_cols_), within);
     regions_.trim(region, within);
+
+    // across a straight edge, the ring's mean rises by 4 / pi of the jump per ring radius; its
+    // noise moves stretches of the edge as long as the ring is wide, each by itself
+    const double ring_mm = test_.ring.radius_px * pixel_mm,
+                 edge_mm = perimeter_mm(region, pixel_mm);
+    const double gap_mm = std::sqrt(test_.touching_gap_mm / (3 * jump));
+    const double moved_mm =
+        (std::min)(free_sd_per_mm_ / jump * std::numbers::pi / 4, 1.0) * ring_mm;
+    const double stretches = (std::max)(edge_mm / (2 * ring_mm), 1.0);
+    return jump > 0 ? edge_mm * std::sqrt(square(gap_mm) + square(moved_mm) / stretches)
+                    : edge_mm * ring_mm;
   }
 
   Point3<double> point(Index i, Index j, double depth_mm) const {
@@ -374,6 +404,7 @@ class ContactRegion {
   detail::BorderedImage image_;
   detail::Regions regions_;
   CurvatureMap<S> curvature_;
+  double free_sd_per_mm_ = 0;  // of the free membrane's curvature about its plane
   std::vector<S> statistic_, raw_, mean_, free_;  // curvatures: clamped, plain, smoothed, plane
   detail::ReservedVector<S> samples_{2 * most};
   std::vector<detail::MmPerPx<double>> rays_;

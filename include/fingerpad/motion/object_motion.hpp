@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -62,6 +63,12 @@ struct [[nodiscard]] ObjectMotionResult {
       {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
   S residual_rms_mm = S(0);  ///< rms distance of the dots used from the rigid motion
+  /// Standard deviations of the position, as the length of its error, and of the angle between
+  /// found and true rotation, since the object began; NaN without depth_noise_mm. The noise of a
+  /// dot, or the residual if that is larger, is common to about four dots, as far as depth is
+  /// smoothed, and moves the position as a whole; what dots that leave take with them adds up.
+  S position_sd_mm = not_a_number<S>();
+  S rotation_sd_rad = not_a_number<S>();
 
   bool has_pose() const { return status == MotionStatus::ok || status == MotionStatus::doubtful; }
   bool ok() const { return status == MotionStatus::ok; }
@@ -105,6 +112,7 @@ class ObjectMotion {
     const auto slipping = as_view(slips);
     last_.begun = false;
     last_.dots_used = 0;
+    last_.position_sd_mm = last_.rotation_sd_rad = not_a_number<S>();
     last_.status = MotionStatus::no_pose;
     if (dots.rows() != rows_ || dots.cols() != cols_ || !same_size(dots, flags) ||
         !same_size(dots, slipping)) {
@@ -112,6 +120,7 @@ class ObjectMotion {
     }
     read(dots, flags, slipping);
     last_.status = look(depth_noise_mm);
+    estimate_errors(depth_noise_mm);
     return last_;
   }
 
@@ -177,6 +186,34 @@ class ObjectMotion {
     }
     const bool doubted = depth_noise_mm > 0 && S(1.4 * depth_noise_mm) < last_.residual_rms_mm;
     return doubted ? MotionStatus::doubtful : MotionStatus::ok;
+  }
+
+  /// Variance of the pose's angle per variance of a dot's depth: that of a plane through them. The
+  /// memory of the pose is worth as much when the object begins, and loses with each share of new
+  /// dots, which are entered with the pose of their frame.
+  void estimate_errors(double depth_noise_mm) {
+    using std::sqrt;
+    if (!last_.has_pose() || !(depth_noise_mm > 0)) {
+      return;
+    }
+    const auto used = last_.begun ? fresh() : known();
+    Point3<S> middle = {S(0), S(0), S(0)};
+    S spread_sq = S(0);
+    const S count = S(static_cast<double>(used.size()));
+    for (const Seen& s : used) {
+      middle += s.dot_mm / count;
+    }
+    for (const Seen& s : used) {
+      spread_sq = spread_sq + squared_norm(s.dot_mm - middle);
+    }
+    constexpr double common = 4;  // dots with one error
+    const S tilt = S(4 * common) / spread_sq;
+    const S renewed = S(static_cast<double>(fresh_)) / S(static_cast<double>(known_ + fresh_));
+    memory_ = last_.begun ? tilt : memory_ + renewed * tilt;
+    const S noise =
+        S(depth_noise_mm) < last_.residual_rms_mm ? last_.residual_rms_mm : S(depth_noise_mm);
+    last_.position_sd_mm = S(std::numbers::sqrt2) * noise;
+    last_.rotation_sd_rad = last_.begun ? S(0) : noise * sqrt(memory_ + tilt);
   }
 
   void end() {
@@ -282,6 +319,7 @@ class ObjectMotion {
   std::size_t flagged_ = 0, found_ = 0, touching_ = 0;
   bool has_object_ = false;
   bool has_slid_ = false;  ///< and no object has begun since
+  S memory_ = S(0);        ///< variance of the map's angle per variance of a dot's depth, 1/mm^2
   S pitch_sq_ = S(0);      ///< mean square distance of neighbours when the object began, mm^2
   Point3<S> start_mm_ = {S(0), S(0), S(0)};
   ObjectMotionResult<S> last_;

@@ -8,6 +8,7 @@
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
 //   auto touch = fingertip(red, green, dots_px, pressure_mpa, time_s);
 //   if (touch.ok()) { ... touch.wrench.force_n ... }
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -178,9 +179,19 @@ class Fingertip {
     }
   }
 
+  /// An edge that may lie so far off that a quarter of the area is in doubt, or no region although
+  /// the rim tells of a press, beyond four standard deviations.
+  static bool doubts_contact(const FingertipResult& touch) {
+    const ContactResult& contact = touch.contact;
+    return contact.in_contact()
+               ? 4 * contact.area_sd_mm2 > contact.area_mm2
+               : touch.wrench.ok() &&
+                     -touch.wrench.force_n.z > 4 * std::sqrt(touch.wrench.covariance(2, 2));
+  }
+
   FingertipStatus judge(FingertipResult& touch) const {
     touch.depth_in_doubt = !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok;
-    touch.contact_in_doubt = find_contact_ && !touch.contact.ok();
+    touch.contact_in_doubt = find_contact_ && (!touch.contact.ok() || doubts_contact(touch));
     const bool sure = !touch.depth_in_doubt && !touch.contact_in_doubt;
     if (sure && find_contact_ && !touch.contact.in_contact()) {
       return FingertipStatus::no_contact;

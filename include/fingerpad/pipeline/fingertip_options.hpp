@@ -83,7 +83,7 @@ struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   // What is in doubt; several may be true. The reason is the status of the stage's own result.
   bool depth_in_doubt = false;    ///< depth or free_depth_mm is of another pad, light or unit
-  bool contact_in_doubt = false;  ///< neither a contact nor its absence is certain
+  bool contact_in_doubt = false;  ///< whether it touches, or how far, is not certain
   bool lacks_motion = false;      ///< no pose
   bool lacks_stick_ratio = false;
   bool lacks_look_up = false;  ///< no normal force by look-up

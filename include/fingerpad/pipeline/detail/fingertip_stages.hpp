@@ -21,7 +21,8 @@ struct FingertipDots {
   OwnedGrid<Point2<double>> seen;  // in px of the samples
   OwnedGrid<Point3<double>> at_mm;
   OwnedGrid<std::uint8_t> touching;
-  double radius_px;  // of the samples
+  OwnedGrid<std::uint8_t> held;  // those that touch wherever the contact's edge may lie
+  double radius_px;              // of the samples
   double depth_noise_mm;
   ContactShift<> shift;
   ObjectMotion<> motion;
@@ -32,6 +33,7 @@ struct FingertipDots {
       : seen(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
         at_mm(seen.rows, seen.cols),
         touching(seen.rows, seen.cols),
+        held(touching),
         radius_px(o.dot_radius_px / o.sampling),
         depth_noise_mm(o.dot_depth_noise_mm),
         shift(o.free_dots_mm),
@@ -68,10 +70,20 @@ struct FingertipDots {
               FingertipResult& touch) {
     (void)spatial_dots(camera, seen.view(), depth_mm, at_mm.view());
     contact_at_dots(seen.view(), mask, touching.view(), radius_px);
+    const double edge_px = edge_sd_px(touch.contact);
+    contact_at_dots(seen.view(), mask, held.view(), radius_px + edge_px);
     touch.stick = stick(at_mm.view(), touching.view(), time_s);
     if (touch.contact.ok()) {
       touch.shift = shift(at_mm.view(), touching.view());
     }
+  }
+
+  /// How far the edge of a round contact may lie from where it was found, in px of the samples.
+  static double edge_sd_px(const ContactResult& contact) {
+    const auto px = static_cast<double>(contact.contact_px);
+    return contact.in_contact()
+               ? contact.area_sd_mm2 / contact.area_mm2 * std::sqrt(px / (4 * std::numbers::pi))
+               : 0.0;
   }
 
   /// Decides whether the object slides, which needs the forces, and computes its motion from the
@@ -80,7 +92,7 @@ struct FingertipDots {
     touch.slip = friction(load_of(touch), touch.stick);
     const LazyView slips(seen.rows, seen.cols,
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
-    touch.motion = motion(at_mm.view(), touching.view(), slips, depth_noise_mm);
+    touch.motion = motion(at_mm.view(), held.view(), slips, depth_noise_mm);
   }
 
   /// The load from a six-axis force, else from the look-up; unknown without both.
