@@ -566,7 +566,7 @@ TEST_CASE("dots: garbage among the spots is none") {
 }
 
 TEST_CASE("dots: a print that jumps as a whole keeps its labels") {
-  // a round print, as on a pad; from frame to frame it moves by up to two pitches
+  // a round print, as on a pad; along rows and columns it moves by up to two pitches to both sides
   Print print;
   print.frame = {360, 360};
   print.rows = print.cols = 11;
@@ -582,7 +582,7 @@ TEST_CASE("dots: a print that jumps as a whole keeps its labels") {
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int frame = 0; frame < 100; ++frame) {
     const DotPlaces now =
-        test::moved(truth, print.pitch_px * cv::Vec2d(unit(random), unit(random)));
+        test::moved(truth, 2 * print.pitch_px * cv::Vec2d(unit(random), unit(random)));
     std::vector<Point2<double>> spots;
     for (const cv::Vec2d& dot : now) {
       if (is_present(dot) && unit(random) < 0.9) {

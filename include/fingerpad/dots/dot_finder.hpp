@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Finds printed dots in camera frames, assigns them rows and columns, and tracks them from frame to
-// frame. Unknown properties of the print (size, spacing, dark or bright, number of rows) are found
-// in a frame of the free pad. Needs OpenCV (core, imgproc): target fingerpad::dot_finder.
+// Finds printed dots in camera frames and assigns them rows and columns. Unknown properties of the
+// print (size, spacing, dark or bright, number of rows) are found in a frame of the free pad. Needs
+// OpenCV (core, imgproc): target fingerpad::dot_finder.
 //
 //   #include "fingerpad/adapt/opencv.hpp"            // makes cv::Mat_ a grid
 //   DotFinder finder(free_frame);                    // any pad with a grid of dots
@@ -102,8 +102,8 @@ struct [[nodiscard]] DotResult {
   bool ok() const { return status == DotStatus::ok; }
 };
 
-/// Finds and labels the dots of a pad. A value: it knows where the dots were in the last frame;
-/// copy it to return to a frame. One object a thread and pad.
+/// Finds and labels the dots of a pad. A value: of a print that reaches beyond the picture it knows
+/// where it was in the last frame; copy it to return to a frame. One object a thread and pad.
 class DotFinder {
   using Place = detail::Place;
   using Places = detail::Places;
@@ -147,7 +147,7 @@ class DotFinder {
                      return view.contains({at.x, at.y}) &&
                             (where.empty() || where(cvRound(at.y), cvRound(at.x)) != 0);
                    });
-    last_ = print_->free_px();
+    seeds_px_ = print_->seeds_px();
   }
 
   /// Whether the free frame showed the grid.
@@ -192,14 +192,14 @@ class DotFinder {
     std::copy_if(spots.begin(), spots.end(), std::back_inserter(good),
                  [](const Place& spot) { return is_plausible(spot); });
     const detail::SpotMap map(good);
-    const auto answer = print_->labels_of(map, last_, max_off_);
+    const auto answer = print_->labels_of(map, seeds_px_, max_off_);
     Places found(rows(), cols(), detail::no_place());
     result.status = answer.score <= 0  ? DotStatus::lost
                     : answer.ambiguous ? DotStatus::ambiguous
                                        : DotStatus::ok;
     if (result.ok()) {
       const Places all = places_of(answer.labels, map);
-      last_ = completed(all, print_->free_px());
+      print_->follow(all, seeds_px_);
       constexpr Index beyond = detail::DotPrint::beyond;
       found = window_of(all, beyond, beyond, rows(), cols(), detail::no_place());
     }
@@ -350,7 +350,7 @@ class DotFinder {
   std::string refusal_;
   detail::SpotLook look_;
   Places free_;
-  Places last_;  ///< where the dots were, also those around the print
+  std::vector<Place> seeds_px_;  ///< where the seeds of labels are looked for
   std::optional<detail::SpotFinder> spots_;
   std::optional<detail::DotPrint> print_;
   detail::SpotWorkspace workspace_;

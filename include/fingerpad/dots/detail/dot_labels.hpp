@@ -252,16 +252,30 @@ class DotPrint {
       }
     }
     choose_seeds(middle / static_cast<double>(count_));
+    known_ = free_;
+    for (std::size_t k = 0; k < known_.cells().size(); ++k) {
+      known_.cells()[k] = kind_.cells()[k] == blank ? no_place() : known_.cells()[k];
+    }
+    for (Index down = -beyond; down <= beyond; ++down) {
+      for (Index right = -beyond; right <= beyond; ++right) {
+        shifts_.push_back({down, right});
+      }
+    }
+    std::sort(shifts_.begin(), shifts_.end(), [](const DotIndex& a, const DotIndex& b) {
+      return a.row * a.row + a.col * a.col < b.row * b.row + b.col * b.col;
+    });
     for (Index down = -2 * beyond; down <= 2 * beyond; ++down) {
       for (Index right = -2 * beyond; right <= 2 * beyond; ++right) {
         exposed_(down + 2 * beyond, right + 2 * beyond) =
             count([&](Index i, Index j) { return kind_(i, j) == printed; }, blank, {down, right});
+        const bool still = down == 0 && right == 0;
+        bordered_ =
+            bordered_ && (still || exposed_(down + 2 * beyond, right + 2 * beyond) >= evidence);
       }
     }
   }
 
-  /// Where the dots of the free pad are, and those that would lie around them.
-  const Places& free_px() const { return free_; }
+  /// Dots of the free pad.
   Index count() const { return count_; }
 
   struct Answer {
@@ -270,23 +284,38 @@ class DotPrint {
     Index score = 0;         ///< labels, less those where nothing is printed
   };
 
-  /// Labels of spots, from where the dots were `last`; without a score if too few fit.
-  Answer labels_of(const SpotMap& spots, const Places& last, double max_off) const {
+  /// Where the seeds are on the free pad.
+  std::vector<Place> seeds_px() const {
+    std::vector<Place> places;
+    for (const DotIndex& seed : seeds_) {
+      places.push_back(free_(seed.row, seed.col));
+    }
+    return places;
+  }
+  /// The border of a print tells its rows and columns wherever it is. One that reaches beyond the
+  /// picture is followed: its seeds are then looked for where they were.
+  void follow(const Places& found, std::vector<Place>& seeds_px) const {
+    for (std::size_t k = 0; k < seeds_.size() && !bordered_; ++k) {
+      const Place& seed = found(seeds_[k].row, seeds_[k].col);
+      seeds_px[k] = is_finite(seed) ? seed : seeds_px[k];
+    }
+  }
+
+  /// Labels of spots, with the seeds near `seeds_px`; without a score if too few fit.
+  Answer labels_of(const SpotMap& spots, const std::vector<Place>& seeds_px, double max_off) const {
     const auto most = static_cast<double>((std::min)(count_, static_cast<Index>(spots.size())));
+    const DotGrowth growth(free_, spots);
     std::vector<Answer> guesses;
     Answer best;
     bool done = false;
-    for (const Places* base : {&last, &free_}) {
-      const DotGrowth growth(*base, spots);
-      for (std::size_t k = 0; k < seeds_.size() && !done; ++k) {
-        guesses.push_back(grown(growth, seeds_[k], spots, *base));
-        const Answer& guess = guesses.back();
-        const bool decides = best.ambiguous && !guess.ambiguous && guess.score == best.score;
-        const bool better = guess.score > best.score || decides;
-        best = better ? guess : best;
-        done = !best.ambiguous &&
-               static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
-      }
+    for (std::size_t k = 0; k < seeds_.size() && !done; ++k) {
+      guesses.push_back(grown(growth, seeds_[k], seeds_px[k], spots));
+      const Answer& guess = guesses.back();
+      const bool decides = best.ambiguous && !guess.ambiguous && guess.score == best.score;
+      const bool better = guess.score > best.score || decides;
+      best = better ? guess : best;
+      done = !best.ambiguous &&
+             static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
     }
     const auto enough = [&] {
       return static_cast<double>(number_of(best.labels)) >= min_explained * most;
@@ -299,12 +328,7 @@ class DotPrint {
         drop_where_other(best.labels, other.labels);
       }
     }
-    Labels by_last = best.labels, by_free = best.labels;  // the last frame may have had a shadow
-    DotGrowth(last, spots).drop_strangers(by_last, max_off);
-    DotGrowth(free_, spots).drop_strangers(by_free, max_off);
-    for (std::size_t k = 0; k < best.labels.cells().size(); ++k) {
-      best.labels.cells()[k] = (std::max)(by_last.cells()[k], by_free.cells()[k]);
-    }
+    growth.drop_strangers(best.labels, max_off);
     return enough() ? best : Answer{};
   }
 
@@ -354,53 +378,45 @@ class DotPrint {
   /// spots where nothing is printed.
   Answer grown(const DotGrowth& growth,
                const DotIndex& seed,
-               const SpotMap& spots,
-               const Places& base) const {
-    const Place& from = base(seed.row, seed.col);
-    const auto hit = spots.nearest(from, std::numeric_limits<double>::infinity());
+               const Place& near,
+               const SpotMap& spots) const {
+    const auto hit = spots.nearest(near, std::numeric_limits<double>::infinity());
     Answer answer;
     if (hit.spot < 0) {
       return answer;
     }
-    const Place move = spots[hit.spot] - from;
+    const Place move = spots[hit.spot] - free_(seed.row, seed.col);
     Labels& labels = answer.labels = growth.from(seed, move);
     Labels sure = labels;  // few specks lie so well where a dot would be
     growth.drop_misfits(sure, 0.15);
-    std::vector<DotIndex> shifts;  // the smallest first
-    for (Index down = -beyond; down <= beyond; ++down) {
-      for (Index right = -beyond; right <= beyond; ++right) {
-        shifts.push_back({down, right});
-      }
-    }
-    std::sort(shifts.begin(), shifts.end(), [](const DotIndex& a, const DotIndex& b) {
-      return a.row * a.row + a.col * a.col < b.row * b.row + b.col * b.col;
-    });
     std::vector<Index> wrong;
-    for (const DotIndex& shift : shifts) {
+    for (const DotIndex& shift : shifts_) {
       wrong.push_back(count(sure, blank, shift));
     }
     const Index least = *std::min_element(wrong.begin(), wrong.end());
     std::optional<DotIndex> by;
-    for (std::size_t k = 0; k < shifts.size(); ++k) {
+    for (std::size_t k = 0; k < shifts_.size(); ++k) {
       if (wrong[k] >= least + evidence) {
         continue;
       }
       if (!by) {
-        by = shifts[k];
+        by = shifts_[k];
       } else {
-        answer.ambiguous = answer.ambiguous || is_rival(shifts[k], *by, labels, base, move);
+        answer.ambiguous = answer.ambiguous || is_rival(shifts_[k], *by, labels, move);
       }
     }
     answer.score = -count(sure, blank, *by);
     labels = window_of(labels, -by->row, -by->col, labels.rows(), labels.cols(), -1);
-    Places known = base;
-    for (std::size_t k = 0; k < known.cells().size(); ++k) {
-      if (kind_.cells()[k] == blank) {
-        known.cells()[k] = no_place();
+    bool changed = by->row != 0 || by->col != 0;
+    for (std::size_t k = 0; k < labels.cells().size(); ++k) {
+      if (kind_.cells()[k] == blank && labels.cells()[k] >= 0) {
         labels.cells()[k] = -1;
+        changed = true;
       }
     }
-    DotGrowth(known, spots).settle(labels);
+    if (changed) {
+      DotGrowth(known_, spots).settle(labels);
+    }
     answer.score += number_of(labels);
     return answer;
   }
@@ -410,11 +426,10 @@ class DotPrint {
   bool is_rival(const DotIndex& other,
                 const DotIndex& shift,
                 const Labels& labels,
-                const Places& base,
                 const Place& move) const {
     return exposed_(other.row - shift.row + 2 * beyond, other.col - shift.col + 2 * beyond) >=
                evidence ||
-           missing(labels, other, base, move) + evidence <= missing(labels, shift, base, move);
+           missing(labels, other, move) + evidence <= missing(labels, shift, move);
   }
 
   /// How many of some places fall on places of a kind if all are moved by rows and columns.
@@ -432,16 +447,13 @@ class DotPrint {
   }
 
   /// How many printed dots have no label then, although they would be in view.
-  Index missing(const Labels& labels,
-                const DotIndex& by,
-                const Places& base,
-                const Place& move) const {
+  Index missing(const Labels& labels, const DotIndex& by, const Place& move) const {
     Index number = 0;
     for (Index i = 0; i < labels.rows(); ++i) {
       for (Index j = 0; j < labels.cols(); ++j) {
         const bool is_printed =
             kind_.contains(i + by.row, j + by.col) && kind_(i + by.row, j + by.col) == printed;
-        number += is_printed && labels(i, j) < 0 && in_view_(base(i, j) + move) ? 1 : 0;
+        number += is_printed && labels(i, j) < 0 && in_view_(free_(i, j) + move) ? 1 : 0;
       }
     }
     return number;
@@ -460,8 +472,11 @@ class DotPrint {
   }
 
   InView in_view_;
-  Places free_;
+  Places free_;   ///< dots of the free pad, and those that would lie around them
+  Places known_;  ///< the same without those that would lie where nothing is printed
   Table<Kind> kind_;
+  bool bordered_ = true;          ///< no shift hides all of the border
+  std::vector<DotIndex> shifts_;  ///< of rows and columns, the smallest first
   Index count_ = 0;
   std::vector<DotIndex> seeds_;
   /// Dots that would lie where nothing is printed, by a shift of -2 beyond to 2 beyond.

@@ -111,51 +111,64 @@ class Neighbours {
   }
 
   /// Value at the middle of a plane fitted to the values; NaN if there are fewer than three. Near
-  /// values weigh more, and values off the median by `scale` or more weigh less. A small ridge term
-  /// on the slopes keeps the fit stable for neighbours in one line.
+  /// values weigh more. If one is off the plane by more than a tenth of `scale`, those off the
+  /// median by `scale` or more weigh less.
   Place at_middle(double scale) const {
     if (count_ < 3) {
       return no_place();
     }
-    constexpr double hold = 0.05;
-    // Similar values need no median: the weights would change by less than 1e-4.
-    const Place middle = spread() < 0.1 * scale ? values_[0] : median();
-    double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
-    Place b{0, 0}, br{0, 0}, bc{0, 0};
+    std::array<double, most> weights;
+    for (std::size_t k = 0; k < count_; ++k) {
+      weights[k] = 1 / (rows_[k] * rows_[k] + cols_[k] * cols_[k]);
+    }
+    const Plane plane = fit(weights);
+    double farthest = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Place at = plane.middle + rows_[k] * plane.by_row + cols_[k] * plane.by_col;
+      farthest = (std::max)(farthest, squared_norm(values_[k] - at));
+    }
+    if (farthest < 0.01 * scale * scale) {
+      return plane.middle;
+    }
+    const Place middle = median();
     for (std::size_t k = 0; k < count_; ++k) {
       const double off_sq = squared_norm(values_[k] - middle) / (scale * scale);
-      const double distance_sq = rows_[k] * rows_[k] + cols_[k] * cols_[k];
-      const double weight = 1 / (distance_sq * (1 + off_sq * off_sq));
-      const double by_row = weight * rows_[k];
-      const double by_col = weight * cols_[k];
-      s += weight;
-      r += by_row;
-      c += by_col;
-      rr += by_row * rows_[k];
-      rc += by_row * cols_[k];
-      cc += by_col * cols_[k];
-      b += weight * values_[k];
-      br += by_row * values_[k];
-      bc += by_col * values_[k];
+      weights[k] /= 1 + off_sq * off_sq;
     }
-    // First row of the inverse of [s r c; r rr rc; c rc cc], by cofactors.
-    const double at_b = rr * cc - rc * rc;
-    const double at_br = c * rc - r * cc;
-    const double at_bc = r * rc - c * rr;
-    return (at_b * b + at_br * br + at_bc * bc) / (s * at_b + r * at_br + c * at_bc);
+    return fit(weights).middle;
   }
 
  private:
   static constexpr std::size_t most = (2 * reach + 1) * (2 * reach + 1) - 1;
 
-  double spread() const {
-    Place low = values_[0];
-    Place high = low;
-    for (std::size_t k = 1; k < count_; ++k) {
-      low = {(std::min)(low.x, values_[k].x), (std::min)(low.y, values_[k].y)};
-      high = {(std::max)(high.x, values_[k].x), (std::max)(high.y, values_[k].y)};
+  struct Plane {
+    Place middle, by_row, by_col;
+  };
+
+  /// A small ridge term on the slopes keeps the fit stable for neighbours in one line.
+  Plane fit(const std::array<double, most>& weights) const {
+    constexpr double hold = 0.05;
+    double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
+    Place b{0, 0}, br{0, 0}, bc{0, 0};
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double by_row = weights[k] * rows_[k];
+      const double by_col = weights[k] * cols_[k];
+      s += weights[k];
+      r += by_row;
+      c += by_col;
+      rr += by_row * rows_[k];
+      rc += by_row * cols_[k];
+      cc += by_col * cols_[k];
+      b += weights[k] * values_[k];
+      br += by_row * values_[k];
+      bc += by_col * values_[k];
     }
-    return norm(high - low);
+    // The inverse of [s r c; r rr rc; c rc cc], by cofactors.
+    const double at_b = rr * cc - rc * rc, at_br = c * rc - r * cc, at_bc = r * rc - c * rr;
+    const double by_rr = s * cc - c * c, by_rc = r * c - s * rc, by_cc = s * rr - r * r;
+    const double det = s * at_b + r * at_br + c * at_bc;
+    return {(at_b * b + at_br * br + at_bc * bc) / det, (at_br * b + by_rr * br + by_rc * bc) / det,
+            (at_bc * b + by_rc * br + by_cc * bc) / det};
   }
 
   Place median() const {
@@ -254,9 +267,10 @@ inline Places flattened(const Places& dots) {
   return flat;
 }
 
-/// Fills in missing dots, outward from the known ones: their deviation from `base` continues that
-/// of their neighbours.
-inline Places completed(Places dots, const Places& base) {
+/// Fills in missing dots, outward from the known ones: their deviation from the regular grid
+/// continues that of their neighbours.
+inline Places completed(Places dots) {
+  const Places base = flattened(dots);
   const Table<double> spacing_px = spacings_px(base);
   for (bool grown = true; grown;) {
     grown = false;
@@ -273,10 +287,6 @@ inline Places completed(Places dots, const Places& base) {
     }
   }
   return dots;
-}
-/// The same from the regular grid.
-inline Places completed(const Places& dots) {
-  return completed(dots, flattened(dots));
 }
 
 /// The window of rows x cols from (top, left); `none` outside of the table.
