@@ -220,7 +220,7 @@ void bind_fingertip(py::module_& module) {
       "It stores past frames: use one object for each pad.")
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
            py::arg("free_dots_mm"), py::arg("contact") = fingerpad::ContactTest(),
-           py::arg("stick") = StickOptions{.noise = 0.005}, py::arg("wrench") = py::none(),
+           py::arg("stick") = StickOptions{}, py::arg("wrench") = py::none(),
            py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
            py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),

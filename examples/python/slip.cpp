@@ -66,9 +66,7 @@ void bind_slip(py::module_& module) {
       module, "StickOptions",
       "Noise of the dots, in their unit, and what counts as slip; see slip/stick_ratio.hpp.")
       .def_readwrite("noise", &StickOptions::noise,
-                     "standard deviation of a dot along x and along y; 0: a 150th of the pitch")
-      .def_readwrite("free_frames", &StickOptions::free_frames,
-                     "frames of the free pad in which the noise is measured; 0: none")
+                     "standard deviation of a dot along x and along y; 0: measured")
       .def_readwrite("slip_share", &StickOptions::slip_share)
       .def_readwrite("false_slip", &StickOptions::false_slip)
       .def_readwrite("min_dots", &StickOptions::min_dots, ">= 6")

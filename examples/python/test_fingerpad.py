@@ -277,7 +277,7 @@ def test_statuses_are_those_of_cpp():
 def test_dots_that_move_as_one_stick_and_those_that_stay_behind_slip():
     y, x = np.mgrid[:9, :9] * 20.0
     free = np.stack([x, y], axis=-1)
-    ratio = fp.StickRatio(9, 9, fp.StickOptions(free_frames=0))
+    ratio = fp.StickRatio(9, 9, fp.StickOptions(noise=0.06))
     inside = np.hypot(x - 80, y - 80) < 70
     for k in range(12):
         dots = free + [1.2 * k, 0]

@@ -227,6 +227,31 @@ TEST_CASE("stick ratio: the reference is the newest stored frame further than U"
   expect(5.1, 0, 0);       // at rest an image is not compared again
 }
 
+TEST_CASE("stick ratio: in space a stored frame further than U / 2 will do, with the limit of U") {
+  const double reference_mm = reference_of(0.005);
+  for (const double share : {0.45, 0.55, 0.9}) {
+    for (const double behind : {0.9, 1.1}) {  // in units of the limit
+      CAPTURE(share, behind);
+      SlippingPatch patch(0.6, 5.9);
+      StickRatio<> stick(21, 21, {.noise = 0.005});
+      (void)stick(patch.dots, patch.contact);
+      patch.step(test::moved_by({0, 0, 0}, {0, 0, 0}, {share * reference_mm, 0, 0}), 2);
+      Spatial dots = patch.dots;
+      for (Index i = 9; i < 12; ++i) {
+        for (Index j = 13; j < 16; ++j) {
+          dots(i, j).x -= behind * reference_mm / 18;
+        }
+      }
+      const auto r = stick(dots, patch.contact);
+      CHECK(r.updated() == (share > 0.5));
+      if (r.updated()) {
+        CHECK(r.furthest == Approx(share * reference_mm).epsilon(0.01));
+        CHECK((stick.states()(10, 14) == DotState::slip) == (behind > 1));
+      }
+    }
+  }
+}
+
 TEST_CASE("stick ratio: in space a frame at rest is compared again") {
   SlippingPatch patch;
   StickRatio<> stick(21, 21, {.noise = 0.005});
@@ -665,26 +690,25 @@ TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
 }
 
 TEST_CASE("stick ratio: without a given noise it holds in every unit") {
-  for (const double unit : {1.0, 0.08, 8e-5, 40.0}) {
+  std::array<StickResult<>, 12> expected;
+  for (const double unit : {1.0, 0.0625, 1.0 / 16384, 64.0}) {  // powers of two: no rounding
     CAPTURE(unit);
+    test::Random random(4);
     Follower f(StickOptions{});
-    const auto at = [&](double share) {
-      auto dots = shifted(share * reference_of(20.0 / 150));
+    int updated = 0;
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      auto dots = noisy(shifted(1.5 * static_cast<double>(k)), 0.05, random);
       for (auto& p : dots.cells) {
         p = unit * p;
       }
-      return f(dots);
-    };
-    CHECK(at(0).status == StickStatus::unmoved);
-    CHECK(at(0.24).status == StickStatus::unmoved);
-    CHECK(at(0.49).status == StickStatus::unmoved);
-    const auto near = at(0.76);  // from 0: U / 2
-    CHECK(near.updated());
-    CHECK(near.furthest == Approx(0.76 * reference_of(20.0 / 150) * unit));
-    const auto r = at(1.23);  // from 0: 0.74 from the frame before the last is too little
-    CHECK(r.updated());
-    CHECK(r.furthest == Approx(1.23 * reference_of(20.0 / 150) * unit));
-    CHECK(r.stick_ratio == 1);
+      auto r = f(dots);
+      updated += r.updated() ? 1 : 0;
+      r.furthest /= unit;
+      expected[k] = unit == 1 ? r : expected[k];
+      CHECK(same(r, expected[k]));
+    }
+    CHECK(updated > 8);
+    CHECK(f.stick.noise() == Approx(0.05 * unit).epsilon(0.1));
   }
 }
 
@@ -921,7 +945,6 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(with({}) == "accepted");
   CHECK(with({.noise = -1}) == "StickOptions: noise = -1, must be finite and >= 0");
   CHECK(with({.noise = test::nan}) == "StickOptions: noise = nan, must be finite and >= 0");
-  CHECK(with({.free_frames = -1}) == "StickOptions: free_frames = -1, must be >= 0");
   CHECK(with({.slip_share = 0.6}) == "StickOptions: slip_share = 0.6, must be in (0, 0.5]");
   CHECK(with({.false_slip = 0}) == "StickOptions: false_slip = 0, must be in (0, 0.5]");
   CHECK(with({.min_dots = 5}) == "StickOptions: min_dots = 5, must be >= 6");
@@ -965,42 +988,45 @@ TEST_CASE("stick ratio: a pad seen in a mirror moves as the mirrored object") {
 
 namespace {
 
-/// Free frames of a pad with this noise, shaken and rotated; a share `wrong` of its dots has wrong
-/// positions.
-void show_free(StickRatio<>& stick, double noise_mm, int frames, double wrong = 0) {
+/// Frames of a pad with this noise that is dragged to and fro; two thirds of the contact stick, the
+/// rest slips more and more. A share `wrong` of the dots has wrong positions.
+void show(StickRatio<>& stick, double noise_mm, int frames, bool touches, double wrong = 0) {
   test::Random random(3);
   SlippingPatch patch;
   for (int k = 0; k < frames; ++k) {
     patch.step(test::moved_by({0, 0, random.uniform(-0.02, 0.02)}, {1, 0, 0},
-                              {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0}));
+                              {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0}),
+               0.67);
     Spatial dots = noisy(patch.dots, noise_mm, 0.025, random);
     for (auto& p : dots.cells) {
       p.x += random.uniform() < wrong ? random.uniform(-1, 1) : 0;
     }
-    (void)stick(dots, ContactFlags(21, 21, 0));
+    (void)stick(dots, touches ? patch.contact : ContactFlags(21, 21, 0));
   }
 }
 
 }  // namespace
 
-TEST_CASE("stick ratio: noise is measured in the free frames") {
-  StickRatio<> stick(21, 21, {.noise = 0.005});
-  for (const double noise_mm : {0.002, 0.005, 0.02}) {
-    stick.reset();
-    show_free(stick, noise_mm, 8);
-    CHECK(stick.noise() == 0.005);  // too few to measure noise
-    stick.reset();
-    show_free(stick, noise_mm, 20);
-    CHECK(stick.noise() == Approx(noise_mm).epsilon(0.05));
-    show_free(stick, noise_mm, 100, 0.02);  // one dot in fifty is wrong
-    CHECK(stick.noise() == Approx(noise_mm).epsilon(0.15));
-    stick.reset();
-    CHECK(stick.noise() == 0.005);
+TEST_CASE("stick ratio: noise is measured from frame to frame, touching or not") {
+  StickRatio<> stick(21, 21);
+  for (const bool touches : {false, true}) {
+    for (const double noise_mm : {0.002, 0.005, 0.02}) {
+      CAPTURE(touches, noise_mm);
+      stick.reset();
+      show(stick, noise_mm, 1, touches);
+      CHECK(stick.noise() == 0);  // a pair of frames is needed
+      show(stick, noise_mm, 2, touches);
+      CHECK(stick.noise() == Approx(noise_mm).epsilon(0.15));
+      show(stick, noise_mm, 40, touches, 0.02);  // one dot in fifty is wrong
+      CHECK(stick.noise() == Approx(noise_mm).epsilon(0.2));
+      show(stick, 0.5 * noise_mm, 32, touches);  // the latest 32 frames count
+      CHECK(stick.noise() == Approx(0.5 * noise_mm).epsilon(0.15));
+    }
   }
-  show_free(stick, 0, 20);  // a shaken pad has no noise
-  CHECK(stick.noise() < 1e-9);
-  StickRatio<> given(21, 21, {.noise = 0.005, .free_frames = 0});
-  show_free(given, 0.02, 20);
+  stick.reset();
+  CHECK(stick.noise() == 0);
+  StickRatio<> given(21, 21, {.noise = 0.005});
+  show(given, 0.02, 20, true);
   CHECK(given.noise() == 0.005);
   const PointsPx still = SlippingDots().dots;  // repeated frames show none
   StickRatio<> repeated(21, 21);
@@ -1010,17 +1036,16 @@ TEST_CASE("stick ratio: noise is measured in the free frames") {
   CHECK(repeated.noise() == 0);
 }
 
-TEST_CASE("stick ratio: with the noise of the free frames few dots are taken for slipping") {
+TEST_CASE("stick ratio: with the measured noise few dots are taken for slipping") {
   // four times the given noise; all dots stick
   constexpr double noise_mm = 0.02;
-  const auto slipping = [&](Index free_frames) {
+  const auto slipping = [&](double given) {
     double slip = 0, all = 0;
     test::Random random(6);
     for (int n = 0; n < 20; ++n) {
-      StickRatio<> stick(21, 21, {.noise = 0.005, .free_frames = free_frames});
-      show_free(stick, noise_mm, 12);
+      StickRatio<> stick(21, 21, {.noise = given});
       SlippingPatch patch;
-      for (int k = 0; k < 2; ++k) {
+      for (int k = 0; k < 3; ++k) {
         const auto r = stick(noisy(patch.dots, noise_mm, 0.025, random), patch.contact);
         slip += r.updated() ? static_cast<double>(r.slip) : 0;
         all += r.updated() ? static_cast<double>(r.slip + r.stick) : 0;
@@ -1030,8 +1055,8 @@ TEST_CASE("stick ratio: with the noise of the free frames few dots are taken for
     REQUIRE(all > 500);
     return slip / all;
   };
-  CHECK(slipping(8) < 0.03);
-  CHECK(slipping(0) > 0.1);
+  CHECK(slipping(0) < 0.03);
+  CHECK(slipping(0.005) > 0.1);
 }
 
 TEST_CASE("stick ratio: its standard deviation is smaller with more dots, and grows while kept",

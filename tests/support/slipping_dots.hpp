@@ -20,13 +20,10 @@ namespace test {
 using PointsPx = Image<fingerpad::Point2<double>>;
 using ContactFlags = Image<std::uint8_t>;
 
-/// The options from which these U and delta_0 follow, whatever free frames show.
+/// The options from which these U and delta_0 follow.
 inline fingerpad::StickOptions stick_options(double reference, double slip) {
   const double per_noise = 2 * std::sqrt(56.0) / 18 * std::sqrt(std::log(100.0));
-  return {.noise = slip / per_noise,
-          .free_frames = 0,
-          .slip_share = slip / reference,
-          .covers_pattern = false};
+  return {.noise = slip / per_noise, .slip_share = slip / reference, .covers_pattern = false};
 }
 
 struct SlippingPattern {

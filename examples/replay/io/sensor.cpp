@@ -156,7 +156,6 @@ fingerpad::StickOptions read_stick(const Section& root) {
   options.covers_pattern = section.has("covers_pattern") && section.truth("covers_pattern");
   if (section.has("noise_px")) {
     options.noise = section.positive("noise_px");
-    options.free_frames = 0;  // a given noise is not measured in free frames
   }
   return options;
 }

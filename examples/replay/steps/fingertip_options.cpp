@@ -29,13 +29,10 @@ double threshold_of_shape(const Recording& recording) {
   return fit_contact_threshold(recording.sensor.camera, std::vector{shape_mm}).threshold_per_mm;
 }
 
-/// A noise in px becomes one in mm. Without it, it is that of the free frames.
+/// A noise in px becomes one in mm. Without it, it is measured from frame to frame.
 void set_stick(const Sensor& sensor, fingerpad::StickOptions& options) {
   options.covers_pattern = sensor.stick.covers_pattern;
-  options.free_frames = sensor.stick.free_frames;
-  if (sensor.stick.noise > 0) {
-    options.noise = sensor.stick.noise * sensor.camera.pitch_mm;
-  }
+  options.noise = sensor.stick.noise * sensor.camera.pitch_mm;
 }
 
 void set_look_up(const ForceLookUp& given, FingertipOptions& options) {

@@ -42,8 +42,7 @@ struct FingertipOptions {
   /// Printed dots of the free pad; NaN: missing; empty: no answer from dots.
   StridedView<const Point3<double>> free_dots_mm = {};
   double dot_radius_px = 0;  ///< a dot touches if its whole disc does; see contact_at_dots()
-  /// Noise of the dots in mm, here of 0.06 px of 0.08 mm, and what counts as slip.
-  StickOptions stick = {.noise = 0.005};
+  StickOptions stick = {};   ///< noise of the dots in mm, and what counts as slip
   double dot_depth_noise_mm = 0.025;  ///< standard deviation of a dot's depth, for the motion
   FrictionLimitOptions friction = {};
 

@@ -32,7 +32,7 @@
 #include "fingerpad/math/rotation.hpp"
 #include "fingerpad/slip/detail/dot_surface.hpp"
 #include "fingerpad/slip/detail/dots_in_order.hpp"
-#include "fingerpad/slip/detail/free_noise.hpp"
+#include "fingerpad/slip/detail/frame_noise.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -80,13 +80,11 @@ constexpr const char* name_of(StickStatus status) {
 /// All thresholds follow from the noise:
 ///   delta_0 = 2 gain noise sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
-///   has moved further; a frame is stored when a dot has moved U / 4 from the newest stored one.
+///   has moved further, else by U / 2 (in the image only where the noise is not given); a frame is
+///   stored when a dot has moved U / 4 from the newest stored one.
 struct StickOptions {
-  /// Standard deviation of a dot along x and along y, >= 0, until it has been measured in frames
-  /// without contact. 0: a 150th of the pitch, a large one, so that U / 2 will do as long as no
-  /// stored frame is further away than U.
+  /// Standard deviation of a dot along x and along y, >= 0; 0: measured between successive frames.
   double noise = 0;
-  Index free_frames = 8;  ///< free frames that measure the noise, >= 0; 0: never measured
   /// A dot slips if its slip exceeds this fraction of the longest displacement, in (0, 0.5].
   double slip_share = 1.0 / 18;
   /// Fraction of sticking dots that noise makes appear to slip, in (0, 0.5].
@@ -105,7 +103,6 @@ struct StickOptions {
 inline std::string check(const StickOptions& o) {
   return check("StickOptions",
                {{"noise", o.noise, not_negative},
-                {"free_frames", o.free_frames, not_negative},
                 {"slip_share", o.slip_share, {.min = 0, .max = 0.5, .above_min = true}},
                 {"false_slip", o.false_slip, {.min = 0, .max = 0.5, .above_min = true}},
                 {"min_dots", o.min_dots, at_least(6)},
@@ -164,7 +161,7 @@ class StickRatio {
         frame_{rows, cols},
         now_(frame_.found),
         free_(frame_.found),
-        noise_of_free_(now_.size(), frame_.width),
+        measured_noise_(now_.size(), frame_.width),
         touches_(now_.size(), 0),
         states_(now_.size(), DotState::none),
         slips_(now_.size(), no_slip()),
@@ -181,7 +178,7 @@ class StickRatio {
   /// Returns to the state before the first frame.
   void reset() {
     forget();
-    noise_of_free_.reset();
+    measured_noise_.reset();
     std::fill(free_.begin(), free_.end(), detail::missing_point<S>());
     latest_s_ = contact_s_ = never;
   }
@@ -205,6 +202,9 @@ class StickRatio {
     latest_s_ = (std::max)(latest_s_, time_s);  // latest_s_ if the time is NaN
     ++count_;
     frame_.read(from);
+    if (!(options_.noise > 0)) {
+      measured_noise_.add(frame_.found);
+    }
     read_contact(touch);
     result_.out_of_place = 0;
     result_.back = {};
@@ -232,13 +232,8 @@ class StickRatio {
   /// Slip along x and y of each dot since the reference of the last answer, averaged over
   /// neighbours; NaN if unknown.
   StridedView<const Point2<S>> slips() const { return inside(slips_); }
-  /// Standard deviation of a dot along x and along y, measured in free frames or as given; 0 if
-  /// neither.
-  double noise() const {
-    const bool measured =
-        options_.free_frames > 0 && noise_of_free_.frames() >= options_.free_frames;
-    return measured ? noise_of_free_.sd() : options_.noise;
-  }
+  /// Standard deviation of a dot along x and along y, as given or as measured; 0: not yet known.
+  double noise() const { return options_.noise > 0 ? options_.noise : measured_noise_.sd(); }
 
  private:
   static constexpr double never = -std::numeric_limits<double>::infinity();
@@ -291,14 +286,12 @@ class StickRatio {
     if (!(time_s - contact_s_ <= options_.hold_s)) {
       forget();
       std::copy(frame_.found.begin(), frame_.found.end(), free_.begin());
-      noise_of_free_.add(free_);
     }
     return StickStatus::no_contact;
   }
 
   /// Status of this frame. Fills all of the result but the counts.
   StickStatus with_contact(double time_s) {
-    noise_of_free_.interrupt();
     contact_s_ = is_finite(time_s) ? time_s : contact_s_;
     const Index crossed = place();
     if (5 * crossed > detail::size_of(placed_) + result_.out_of_place) {
@@ -322,13 +315,15 @@ class StickRatio {
 
   /// Searches the reference, answers by it, and stores the frame. The search goes back from the
   /// newest frame as long as the distance grows. Where it begins to shrink, the object has
-  /// reversed, and older frames are not examined. As long as the noise is not known, the newest
-  /// frame further than U / 2 will do if none is further than U: the limit of U is large for it.
+  /// reversed, and older frames are not examined. If none is further than U, the newest one further
+  /// than U / 2 will do, with the limit of U; in the image only where the noise is not given.
   StickStatus compare(const S& reference_sq) {
     StickStatus status = StickStatus::unmoved;
     Index reference = -1;
     S before = S(-1);
     bool rests = false;
+    // of a rolling object, which no motion in the image describes, a short one makes dots slip
+    const bool is_strict = frame_.in_image && options_.noise > 0;
     furthest_sq_ = S(-1);
     for (Index age = 0; age < stored_count_ && value(before) <= value(reference_sq); ++age) {
       const Index slot = (newest_ + options_.capacity - age) % options_.capacity;
@@ -350,15 +345,14 @@ class StickRatio {
       }
       before = sq;
       const bool beyond = value(sq) > value(reference_sq);
-      const bool near = !(noise() > 0) && 4 * value(sq) > value(reference_sq);
+      const bool near = !is_strict && 4 * value(sq) > value(reference_sq);
       if (beyond || (reference < 0 && near)) {
         reference = slot;
         furthest_sq_ = sq;
       }
     }
     if (reference >= 0) {
-      const S limit_share = S(square(options_.slip_share));
-      limit_sq_ = limit_share * (std::max)(furthest_sq_, reference_sq);
+      limit_sq_ = S(square(options_.slip_share)) * (std::max)(furthest_sq_, reference_sq);
       status = answer(stored_.data() + reference * detail::size_of(now_),
                       static_cast<Index>(count_ - stored_at_[reference]));
     }
@@ -732,7 +726,7 @@ class StickRatio {
   detail::FrameOfDots<S> frame_;
   Grid<P> now_;   // of it, the dots in contact and in place
   Grid<P> free_;  // their positions without contact
-  detail::FreeNoise<S> noise_of_free_;
+  detail::FrameNoise<S> measured_noise_;
   Grid<std::uint8_t> touches_;
   Grid<DotState> states_;
   Grid<Point2<S>> slips_;
