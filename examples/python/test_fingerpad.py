@@ -32,12 +32,12 @@ def picture(name):
 
 
 def table(file):
-    """Columns of a file by name; NaN for an empty cell."""
+    """Columns of numbers of a file by name; NaN for an empty cell."""
     with open(file, newline="") as lines:
         rows = list(csv.DictReader(lines))
     number = lambda cell: float(cell) if cell else np.nan
-    return {name: np.array([number(row[name]) for row in rows])
-            for name in rows[0] if name not in ("load", "slip_evidence", "motion_status")}
+    return {name: np.array([number(row[name]) for row in rows]) for name in rows[0]
+            if name not in ("load", "slip_evidence") and not name.endswith("status")}
 
 
 def run(program, *arguments):

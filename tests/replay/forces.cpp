@@ -292,7 +292,7 @@ TEST_CASE("replay: without curves nothing is looked up, and friction tells no sl
     CHECK(is_empty(without[k], look_up));
     CHECK(without[k].at("slip_evidence").find("friction") == std::string::npos);
     std::vector<std::string> change = look_up;
-    change.push_back("normal_force_sd_n");
+    change.insert(change.end(), {"normal_force_sd_n", "look_up_status"});
     if (with[k].at("slip_evidence").find("friction") != std::string::npos) {
       change.insert(change.end(), {"slip_evidence", "stick_ratio", "stick_ratio_sd"});
     }

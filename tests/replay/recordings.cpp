@@ -232,16 +232,10 @@ TEST_CASE("optional sections are accepted, and checked") {
 TEST_CASE("frames of the free pad set the threshold of contact") {
   const auto area_of_frame_2 = [](const Workplace& work) {
     REQUIRE(work.complaint().empty());
-    std::ifstream table(work.out() / "frames.csv");
-    std::string line;
-    for (int k = 0; k < 4; ++k) {
-      std::getline(table, line);
-    }
-    for (int column = 0; column < 5; ++column) {
-      line.erase(0, line.find(',') + 1);
-    }
+    const double area =
+        std::stod(test::table_of(work.out() / "frames.csv").at(2).at("contact_area_mm2"));
     fs::remove_all(work.out());
-    return std::stod(line);
+    return area;
   };
   const Workplace work;
   const double from_shape = area_of_frame_2(work);
