@@ -67,7 +67,8 @@ Enlarged enlarged(const cv::Mat_<float>& values,
   }
   Enlarged large;
   cv::resize(filled, large.value, size, 0, 0, cv::INTER_LINEAR);
-  cv::GaussianBlur(large.value, large.relief, {0, 0}, 5 * per_px);
+  cv::GaussianBlur(filled, filled, {0, 0}, 5 * cells_per_px);
+  cv::resize(filled, large.relief, size, 0, 0, cv::INTER_LINEAR);
   // The pad's edge is drawn smooth, as it is in reality; single missing pixels stay visible.
   cv::GaussianBlur(pad, pad, {0, 0}, 2 * cells_per_px);
   cv::resize(pad, large.opacity, size, 0, 0, cv::INTER_CUBIC);
@@ -168,7 +169,8 @@ void paint_map(Canvas& canvas,
       const float share = clamped((map.value(i, j) - bottom) / range);
       const cv::Vec3b colour = scale.colours(0, static_cast<int>(std::lround(share * 255)));
       const Slope tilt = slope_at(map.relief, i, j, canvas.scale());
-      const float shade = 1 + 0.15F * std::tanh(slopes * (tilt.x + tilt.y));  // lit from top left
+      const float steep = slopes * (tilt.x + tilt.y);  // lit from top left
+      const float shade = 1 + 0.15F * steep / std::sqrt(1 + steep * steep);
       const float line =
           every > 0 ? 0.45F * line_cover(map.value, i, j, every, canvas.scale()) : 0.0F;
       for (int c = 0; c < 3; ++c) {
