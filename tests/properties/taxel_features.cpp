@@ -281,3 +281,30 @@ TEST_CASE("taxel features: whatever is read, what is said is in range", "[taxel_
     }
   });
 }
+
+TEST_CASE("taxel features: what is held still stays", "[taxel_features]") {
+  rc::prop("sum and centroid of a steady hold are those of its first sample", [] {
+    auto o = any_options();
+    o.stuck_after = test::whole(1, 8);
+    const auto flickering = test::whole(0, 6);  // of 16 taxels
+    std::vector<double> load;
+    for (int k = 0; k < 16; ++k) {
+      load.push_back(static_cast<double>(test::whole(1, 1000)));
+    }
+    TaxelFeatures<> finger(4, 4, o);
+    FingerSample<> first, last;
+    for (int n = 0; n < 41; ++n) {
+      Array array(4, 4);
+      for (std::ptrdiff_t k = 0; k < 16; ++k) {
+        array.cells[static_cast<std::size_t>(k)] =
+            load[static_cast<std::size_t>(k)] + (k < flickering ? n % 2 : 0);
+      }
+      last = finger(array, n * o.sample_period_s);
+      first = n == 0 ? last : first;
+    }
+    RC_ASSERT(last.left_out == 0);
+    RC_ASSERT(last.sum == Approx(first.sum));
+    RC_ASSERT(last.center_x_mm == Approx(first.center_x_mm));
+    RC_ASSERT(last.center_y_mm == Approx(first.center_y_mm));
+  });
+}

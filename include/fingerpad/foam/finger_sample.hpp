@@ -17,7 +17,8 @@ enum class TaxelStatus : std::uint8_t {
   quiet,      ///< none does, although some taxel that can be judged is pressed enough to
   filling,    ///< too few samples since the start or since a new clock
   no_taxels,  ///< all taxels are dead, saturated, stuck, flickering or missing
-  frozen,     ///< no reading has changed for long, or ever: a dead array, or nothing touches it
+  frozen,     ///< no reading has changed for long, or ever: a dead array, nothing touches it, or
+              ///< an object is held still
   /// All readings are below what counts as vibration: nothing presses, or the noise is given in
   /// another unit.
   too_weak,

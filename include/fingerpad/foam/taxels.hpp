@@ -17,7 +17,8 @@
 //
 // "Some tactile elements" may vibrate: all of them are listed, each with its waves.
 // Taxels that are dead, saturated, stuck, flickering or missing are left out. They can vibrate
-// again a whole window after they were last bad.
+// again a whole window after they were last bad. Where most taxels that press are frozen, none is
+// stuck: an object is held still.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -49,8 +50,8 @@ struct TaxelOptions {
   double noise_factor = 2.5;  ///< vibration exceeds this many standard deviations, >= 0
   double min_sum = 0;         ///< with a smaller sum of readings there is no centroid, >= 0
   double saturated_at = 1e9;  ///< this reading and larger ones do not count, in (0, 1e9]
-  /// A reading that was the same in this many samples is frozen and, unless it is 0, does not
-  /// count. >= 0; 0: not checked.
+  /// A reading that was the same in this many samples is frozen. Unless it is 0, or more than half
+  /// of those that press are frozen, it does not count. >= 0; 0: not checked.
   Index stuck_after = 30;
 };
 
@@ -293,20 +294,29 @@ class TaxelFeatures {
   /// Stores the usable readings and computes the centroid of those that press.
   template <class View>
   void read(const View& readings, FingerSample<S>& sample) {
-    Point2<S> moment = {S(0), S(0)};
-    int pressed = 0;
+    Point2<S> moment = {S(0), S(0)}, frozen_moment = moment;
+    S frozen_sum = S(0);
+    int pressed = 0, frozen = 0;
     ++unchanged_for_;
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       const auto at = static_cast<Index>(k);
       const S reading = static_cast<S>(readings(at / cols_, at % cols_));
-      if (!counts(reading, taxels_[k])) {
+      const bool is_counted = counts(reading, taxels_[k]), is_held = is_frozen(taxels_[k]);
+      if (!is_counted) {
         ++sample.left_out;
       } else if (value(reading) > 0) {
-        sample.sum = sample.sum + reading;
-        moment += reading * taxels_[k].place_mm;
-        ++pressed;
+        (is_held ? frozen_sum : sample.sum) = (is_held ? frozen_sum : sample.sum) + reading;
+        (is_held ? frozen_moment : moment) += reading * taxels_[k].place_mm;
+        ++(is_held ? frozen : pressed);
       }
-      sample.frozen += is_frozen(taxels_[k]) ? 1 : 0;
+      sample.frozen += is_held ? 1 : 0;
+    }
+    if (frozen > pressed) {
+      sample.sum = sample.sum + frozen_sum;
+      moment += frozen_moment;
+      pressed += frozen;
+    } else {
+      sample.left_out += frozen;
     }
     typical_ = pressed > 0 ? value(sample.sum) / Real(pressed) : Real(0);
     if (value(sample.sum) > 0 && value(sample.sum) >= Real(options_.min_sum)) {
@@ -337,7 +347,7 @@ class TaxelFeatures {
     }
     taxel.reading = reading;
     const bool flickers = taxel.bad_for > 0 && taxel.returned_for > 0;
-    return taxel.floor < infinite() && !flickers && !(is_frozen(taxel) && now != 0);
+    return taxel.floor < infinite() && !flickers;
   }
 
   bool is_frozen(const Taxel& taxel) const {
