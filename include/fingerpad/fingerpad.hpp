@@ -23,6 +23,7 @@
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/depth/sampling.hpp"
 #include "fingerpad/dots/dot_follower.hpp"
+#include "fingerpad/dots/side_dots.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/preslip.hpp"

@@ -422,7 +422,8 @@ class DotFollower {
     const detail::DiscMap map = {l(m.a), l(m.b), l(m.aa) + l.second(m.a, m.a),
                                  l(m.ab) + l.second(m.a, m.b), l(m.bb) + l.second(m.b, m.b)};
     const double reach = max_off * l.pitch();
-    const Point start = wide ? darkest(image, m, guess, reach) : guess;
+    const double threshold = m.light * (1 - 0.4 * m.contrast), sign = m.contrast > 0 ? 1 : -1;
+    const Point start = wide ? detail::darkest(image, threshold, sign, guess, reach) : guess;
     const detail::DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
     const double contrast = fit.contrast / m.contrast;
     m.residual_ratio = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
@@ -439,41 +440,6 @@ class DotFollower {
     m.place = m.likely ? fit.center : guess;
     m.visited = true;
     return m.found;
-  }
-
-  /// The middle of what is as dark (or bright) as the dot within `reach` of `from`, by mean shift.
-  template <class View>
-  static Point darkest(const View& image, const Mark& m, Point from, double reach) {
-    constexpr int rounds = 6;
-    const double threshold = m.light * (1 - 0.4 * m.contrast), sign = m.contrast > 0 ? 1 : -1;
-    const auto r = Index(reach);
-    for (int round = 0; round < rounds; ++round) {
-      const auto x0 = Index(std::floor(from.x + 0.5)), y0 = Index(std::floor(from.y + 0.5));
-      if (x0 < r || y0 < r || x0 + r >= image.cols() || y0 + r >= image.rows()) {
-        break;
-      }
-      double sum = 0;
-      Point moment = {0, 0};
-      for (Index y = -r; y <= r; ++y) {
-        for (Index x = -r; x <= r; ++x) {
-          const double dark = sign * (threshold - double(image(y0 + y, x0 + x)));
-          if (dark > 0 && x * x + y * y <= r * r) {
-            sum += dark;
-            moment += dark * Point{double(x), double(y)};
-          }
-        }
-      }
-      if (!(sum > 0)) {
-        break;
-      }
-      const Point next = Point{double(x0), double(y0)} + moment / sum;
-      const double step = norm(next - from);
-      from = next;
-      if (step < 0.3) {
-        break;
-      }
-    }
-    return from;
   }
 
   /// Neighbours move alike. Of the parts of the print within which they do, the largest is kept.

@@ -63,6 +63,42 @@ struct DiscFit {
   Point2<double> slope = {0, 0};  ///< relative change of the light per px
 };
 
+/// The middle of what is darker than `threshold` (brighter, if `sign` is -1) within `reach` px of
+/// `from`, by mean shift.
+template <class View>
+Point2<double> darkest(
+    const View& image, double threshold, double sign, Point2<double> from, double reach) {
+  constexpr int rounds = 6;
+  const auto r = Index(reach);
+  for (int round = 0; round < rounds; ++round) {
+    const auto x0 = Index(std::floor(from.x + 0.5)), y0 = Index(std::floor(from.y + 0.5));
+    if (x0 < r || y0 < r || x0 + r >= image.cols() || y0 + r >= image.rows()) {
+      break;
+    }
+    double sum = 0;
+    Point2<double> moment = {0, 0};
+    for (Index y = -r; y <= r; ++y) {
+      for (Index x = -r; x <= r; ++x) {
+        const double dark = sign * (threshold - double(image(y0 + y, x0 + x)));
+        if (dark > 0 && x * x + y * y <= r * r) {
+          sum += dark;
+          moment += dark * Point2<double>{double(x), double(y)};
+        }
+      }
+    }
+    if (!(sum > 0)) {
+      break;
+    }
+    const Point2<double> next = Point2<double>{double(x0), double(y0)} + moment / sum;
+    const double step = norm(next - from);
+    from = next;
+    if (step < 0.3) {
+      break;
+    }
+  }
+  return from;
+}
+
 /// Reads windows of one image of any type; one object a thread.
 class DotLocator {
  public:
