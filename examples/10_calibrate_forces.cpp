@@ -138,11 +138,11 @@ Shear fit_shear(Samples samples, const Measure& by) {
   });
   std::printf("tangential force by displacement and %s over %g %s\n", by.name, by.reference,
               by.unit);
-  print("N/mm", all.force.law.coefficients[0], std::sqrt(all.force.covariance[0][0]));
+  print("N/mm", all.force.law.slope, std::sqrt(all.force.covariance[0][0]));
   print("exponent", all.force.law.exponent, std::sqrt(all.force.covariance[1][1]));
   print("N", all.force.residual_sd, all.force_left_out);
   std::printf("moment by rotation and %s over %g %s\n", by.name, by.reference, by.unit);
-  print("N mm/rad", all.moment.law.coefficients[0], std::sqrt(all.moment.covariance[0][0]));
+  print("N mm/rad", all.moment.law.slope, std::sqrt(all.moment.covariance[0][0]));
   print("exponent", all.moment.law.exponent, std::sqrt(all.moment.covariance[1][1]));
   print("N mm", all.moment.residual_sd, all.moment_left_out);
   return all;
@@ -162,10 +162,10 @@ void print_section(const Normal& normal, const Measure& by) {
 void print_section(const Shear& shear, const Measure& by) {
   std::printf("  \"shear\": { \"by\": \"%s\", \"reference\": %g,\n", by.name, by.reference);
   std::printf("    \"displacement_exponent\": %.4f, \"force_n_per_mm\": [%.5g], \"to_mm\": %.4g,\n",
-              shear.force.law.exponent, shear.force.law.coefficients[0], shear.force.law.to);
+              shear.force.law.exponent, shear.force.law.slope, shear.force.law.to);
   std::printf(
       "    \"rotation_exponent\": %.4f, \"moment_n_mm_per_rad\": [%.5g], \"to_rad\": %.4g }",
-      shear.moment.law.exponent, shear.moment.law.coefficients[0], shear.moment.law.to);
+      shear.moment.law.exponent, shear.moment.law.slope, shear.moment.law.to);
 }
 
 int main(int argc, char** argv) {

@@ -157,7 +157,7 @@ void add_look_up(const std::string& name,
 void add_normal(const std::string& name,
                 ContactMeasure measure,
                 const Pairs& pairs,
-                const CurveOptions& options = {}) {
+                const FitOptions& options = {}) {
   const auto fit = [=](const Samples& samples) {
     return fit_normal_force(span_of(samples), options);
   };

@@ -63,9 +63,7 @@ void add_each(const std::string& name, double largest, const Make& make) {
 /// The force of a NormalForce as a plain number.
 template <class Estimator>
 auto number_of(const Estimator& estimator) {
-  return [=](const auto& measure, const auto& displacement, const auto& rotation) {
-    return estimator(measure, displacement, rotation).force_n;
-  };
+  return [=](const auto& measure, const auto&, const auto&) { return estimator(measure).force_n; };
 }
 
 /// `make(S())` returns a NormalForce in the scalar S.
@@ -76,13 +74,6 @@ void add_plain(const std::string& type,
                double largest = largest_mm2) {
   add_each<S>("one frame, " + type + "/" + name, largest,
               [=](auto number) { return number_of(make(number)); });
-}
-
-template <class S>
-ForceCurve<S> compensated(ForceCurve<S> curve) {
-  curve.per_mm_sq = S(-0.02);
-  curve.per_rad_sq = S(0.5);
-  return curve;
 }
 
 template <class S>
@@ -97,17 +88,8 @@ ForceCurve<S> with_errors(ForceCurve<S> curve) {
 }
 
 template <class S>
-ForceCurve<S> rising(int degree) {
-  ForceCurve<S> curve;
-  S term = S(1e-5);
-  curve.coefficients[1] = S(0.02);
-  for (int k = 2; k <= degree; ++k) {
-    curve.coefficients[static_cast<std::size_t>(k)] = term;
-    term *= k == 2 ? S(1e-2) : S(1e-3);
-  }
-  curve.from = S(0);
-  curve.to = S(largest_mm2);
-  return curve;
+ForceCurve<S> rising() {
+  return {{S(0), S(0.02), S(1e-5), S(1e-7)}, S(0), S(largest_mm2)};
 }
 
 /// The quadratic of eq. 18.
@@ -142,29 +124,26 @@ void add_all(const std::string& type) {
       return T(T(0.748) * plain - T(0.637) * sqrt(d.x * d.x + d.y * d.y) + T(1.7));
     };
   });
-  add_plain<S>(type, "NoCompensation",
+  add_plain<S>(type, "NormalForce",
                []<class T>(T) { return NormalForce(test::curve_of_area<T>()); });
-  add_plain<S>(type, "ScaledCompensation",
-               []<class T>(T) { return NormalForce(compensated(test::curve_of_area<T>())); });
   add_each<S>(single + "/published::NormalForce, published", largest_mm2,
               []<class T>(T) { return published::normal_force_by_area<T>(); });
   add_each<S>(single + "/published::NormalForce by depth, published", largest_depth_mm,
               []<class T>(T) { return published::normal_force_by_depth<T>(); });
-  add_plain<S>(type, "PolynomialForce<3>", []<class T>(T) { return NormalForce(rising<T>(3)); });
-  add_plain<S>(type, "PolynomialForce<5>", []<class T>(T) { return NormalForce(rising<T>(5)); });
+  add_plain<S>(type, "NormalForce of degree 3", []<class T>(T) { return NormalForce(rising<T>()); });
   add_each<S>(single + "/power law, published", largest_radius_mm, [](auto) {
     return []<class T>(const T& radius_mm, const Point2<T>&, const T&) {
       return radius_mm > T(0) ? published::force_of_radius_n(radius_mm, T(6), T(1) / T(3)) : T(0);
     };
   });
-  add_each<S>(single + "/ScaledCompensation, variance", largest_mm2, []<class T>(T) {
-    return number_of(NormalForce(with_errors(compensated(test::curve_of_area<T>()))));
+  add_each<S>(single + "/NormalForce, variance", largest_mm2, []<class T>(T) {
+    return number_of(NormalForce(with_errors(test::curve_of_area<T>())));
   });
   add_each<S>(single + "/fused, by area and by depth", largest_mm2, []<class T>(T) {
-    const NormalForce by_area(with_errors(compensated(test::curve_of_area<T>())));
-    const NormalForce by_depth(with_errors(compensated(test::curve_of_depth<T>())));
-    return [=](const T& area, const Point2<T>& d, const T& angle) {
-      return fused(by_area(area, d, angle), by_depth(area / T(80), d, angle)).force_n;
+    const NormalForce by_area(with_errors(test::curve_of_area<T>()));
+    const NormalForce by_depth(with_errors(test::curve_of_depth<T>()));
+    return [=](const T& area, const Point2<T>&, const T&) {
+      return fused(by_area(area), by_depth(area / T(80))).force_n;
     };
   });
   bench::add_streaming(single, static_cast<std::size_t>(bench::Contacts<S>::frames));

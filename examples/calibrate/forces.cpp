@@ -132,7 +132,7 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
     report.parameters.push_back({"coefficient_" + std::to_string(k), fit.curve.coefficients[k],
                                  std::sqrt(fit.curve.covariance[k][k])});
     const auto& row = fit.curve.covariance[k];
-    report.covariance.push_back({row.begin(), row.begin() + 4});
+    report.covariance.push_back({row.begin(), row.end()});
   }
   const double largest_n = fit.curve.force_n(fit.curve.to);
   report.parameters.push_back({std::string("from_") + by.unit, fit.curve.from});
@@ -150,8 +150,10 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
       {"residual_n", fit.curve.residual_sd_n},
       {"covariance", report.covariance}};
   Plot plot{std::string("contact ") + by.name + " [" + by.unit + "]", "normal force [N]", {}};
-  for (const auto& r : fit.residuals) {
-    plot.points.push_back({samples[r.sample].measure, r.measured, r.fitted});
+  for (const Sample& s : samples) {
+    if (s.measure > 0 && std::isfinite(s.normal_force_n)) {
+      plot.points.push_back({s.measure, s.normal_force_n, fit.curve.force_n(s.measure)});
+    }
   }
   outcome.reports.push_back(report);
   outcome.plots.push_back(plot);
@@ -162,9 +164,9 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   const auto moment = fingerpad::fit_moment(samples, by.reference);
   Report report{.what = "shear", .residual = force.residual_sd, .residual_unit = "N"};
   report.parameters = {
-      {"force_n_per_mm", force.law.coefficients[0], std::sqrt(force.covariance[0][0])},
+      {"force_n_per_mm", force.law.slope, std::sqrt(force.covariance[0][0])},
       {"displacement_exponent", force.law.exponent, std::sqrt(force.covariance[1][1])},
-      {"moment_n_mm_per_rad", moment.law.coefficients[0], std::sqrt(moment.covariance[0][0])},
+      {"moment_n_mm_per_rad", moment.law.slope, std::sqrt(moment.covariance[0][0])},
       {"rotation_exponent", moment.law.exponent, std::sqrt(moment.covariance[1][1])},
       {"residual_of_the_moment_n_mm", moment.residual_sd}};
   if (std::isfinite(force.gauge_angle_sd_rad)) {
@@ -177,17 +179,19 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   outcome.sections["force"]["shear"] = {{"by", by.name},
                                         {"reference", by.reference},
                                         {"displacement_exponent", force.law.exponent},
-                                        {"force_n_per_mm", {force.law.coefficients[0]}},
+                                        {"force_n_per_mm", {force.law.slope}},
                                         {"to_mm", force.law.to},
                                         {"rotation_exponent", moment.law.exponent},
-                                        {"moment_n_mm_per_rad", {moment.law.coefficients[0]}},
+                                        {"moment_n_mm_per_rad", {moment.law.slope}},
                                         {"to_rad", moment.law.to}};
   Plot plot{"displacement of the contact [mm]", "tangential force (x and y) [N]", {}};
-  bool is_x = true;
-  for (const auto& r : force.residuals) {
-    const auto& d = samples[r.sample].displacement_mm;
-    plot.points.push_back({is_x ? d.x : d.y, r.measured, r.fitted});
-    is_x = !is_x;
+  for (const Sample& s : samples) {
+    const double gain = force.law.slope * std::pow(s.measure / by.reference, force.law.exponent);
+    const auto &d = s.displacement_mm, &f = s.tangential_force_n;
+    if (s.measure > 0 && is_finite(d) && is_finite(f)) {
+      plot.points.push_back({d.x, f.x, gain * d.x});
+      plot.points.push_back({d.y, f.y, gain * d.y});
+    }
   }
   outcome.reports.push_back(report);
   outcome.plots.push_back(plot);

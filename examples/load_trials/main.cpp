@@ -3,7 +3,9 @@
 // load_trials: evaluates how well the motion of a pad's dots gives the tangential force, for loads
 // left out of the calibration. See --help.
 #include <CLI/CLI.hpp>
+#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <iterator>
@@ -101,11 +103,33 @@ void print_row(const char* name, const Displaced& samples, const Fit& fit) {
   std::printf("\n");
 }
 
+/// F = K d + offset by least squares, or by Huber's loss, for each component.
 auto linear_map(bool robust) {
   return [robust](std::span<const ForceSample<double>> samples) {
-    const auto fit =
-        fingerpad::fit_linear_shear(samples, 1, 0, {.robust = robust, .min_explained = 0.5});
-    return [shear = fingerpad::Shear<>(fit.map)](const Point2<double>& d) {
+    const auto n = static_cast<Eigen::Index>(samples.size());
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(n, 3), forces(n, 2), fit(3, 2);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const ForceSample<double>& s = samples[static_cast<std::size_t>(i)];
+      columns.row(i).head(2) << s.displacement_mm.x, s.displacement_mm.y;
+      forces.row(i) << s.tangential_force_n.x, s.tangential_force_n.y;
+    }
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      Eigen::VectorXd root = Eigen::VectorXd::Ones(n);  // of the weights
+      for (int pass = 0; pass < (robust ? 100 : 1); ++pass) {
+        fit.col(axis) = (root.asDiagonal() * columns)
+                            .colPivHouseholderQr()
+                            .solve(root.cwiseProduct(forces.col(axis)));
+        const Eigen::VectorXd off = (forces.col(axis) - columns * fit.col(axis)).cwiseAbs();
+        Eigen::VectorXd sorted = off;
+        std::sort(sorted.data(), sorted.data() + n);
+        const double sd =
+            1.4826 * sorted(n / 2) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 3));
+        root = (1.345 * sd / off.array().max(1e-12)).min(1).sqrt();
+      }
+    }
+    fingerpad::ShearMap<> map{1,         {1},       {0},       fit(0, 0),
+                              fit(1, 0), fit(0, 1), fit(1, 1), {fit(2, 0), fit(2, 1)}};
+    return [shear = fingerpad::Shear<>(map)](const Point2<double>& d) {
       return shear(1, d, 0).tangential_force_n;
     };
   };

@@ -18,7 +18,6 @@
 namespace python {
 namespace {
 
-using fingerpad::CurveOptions;
 using fingerpad::FitOptions;
 using fingerpad::Point2;
 using NormalForce = fingerpad::NormalForce<>;
@@ -74,23 +73,18 @@ auto without_lock(const Fit& fit) {
 
 NormalFit fit_normal_force(const Array& measure,
                            const Array& normal_force_n,
-                           const CurveOptions& curve,
                            const FitOptions& options) {
   Samples samples = samples_of(measure);
   fill(samples, normal_force_n, "normal_force_n", 1,
        [](Sample& s, Cell x, Cell) { s.normal_force_n = *x; });
-  CurveOptions cubic_curve = curve;
-  cubic_curve.degree = 3;
-  return without_lock(
-      [&] { return fingerpad::fit_normal_force<double>(samples, cubic_curve, options); });
+  return without_lock([&] { return fingerpad::fit_normal_force<double>(samples, options); });
 }
 
 ShearFit fit_tangential_force(const Array& measure,
                               const Array& displacement_mm,
                               const Array& tangential_force_n,
                               const Number& reference,
-                              const std::optional<double>& exponent,
-                              const FitOptions& options) {
+                              const std::optional<double>& exponent) {
   Samples samples = samples_of(measure);
   fill(samples, displacement_mm, "displacement_mm", 2, [](Sample& s, Cell x, Cell y) {
     s.displacement_mm = {*x, *y};
@@ -100,7 +94,7 @@ ShearFit fit_tangential_force(const Array& measure,
   });
   const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_tangential_force<double>(samples, at, exponent, options), at};
+    return {fingerpad::fit_tangential_force<double>(samples, at, exponent), at};
   });
 }
 
@@ -108,15 +102,14 @@ ShearFit fit_moment(const Array& measure,
                     const Array& rotation_rad,
                     const Array& moment_n_mm,
                     const Number& reference,
-                    const std::optional<double>& exponent,
-                    const FitOptions& options) {
+                    const std::optional<double>& exponent) {
   Samples samples = samples_of(measure);
   fill(samples, rotation_rad, "rotation_rad", 1,
        [](Sample& s, Cell x, Cell) { s.rotation_rad = *x; });
   fill(samples, moment_n_mm, "moment_n_mm", 1, [](Sample& s, Cell x, Cell) { s.moment_n_mm = *x; });
   const double at = number_of(reference, "reference");
   return without_lock([&]() -> ShearFit {
-    return {fingerpad::fit_moment<double>(samples, at, exponent, options), at};
+    return {fingerpad::fit_moment<double>(samples, at, exponent), at};
   });
 }
 
@@ -131,14 +124,6 @@ Shear shear_of(const ShearFit& force, const ShearFit& moment) {
                           std::to_string(moment.reference));
   }
   return Shear({force.reference, force.fit.law, moment.fit.law});
-}
-
-/// The cubic's part of an array of a curve.
-template <class Row>
-auto cubic(const Row& all) {
-  std::array<typename Row::value_type, 4> some;
-  std::copy_n(all.begin(), some.size(), some.begin());
-  return some;
 }
 
 Point2<double> displacement_of(const Array& given) {
@@ -166,26 +151,18 @@ void bind_results(py::module_& module) {
 }
 
 void bind_normal_force_fit(py::module_& module) {
-  bind_options<FitOptions>(module, "FitOptions", "Options of force fits; see calibrate/fit.hpp.")
-      .def_readwrite("robust", &FitOptions::robust)
-      .def_readwrite("min_explained", &FitOptions::min_explained);
-  bind_options<CurveOptions>(module, "CurveOptions",
-                             "What fit_normal_force fits; see calibrate/look_up.hpp.")
-      .def_readwrite("through_zero", &CurveOptions::through_zero);
+  bind_options<FitOptions>(module, "FitOptions",
+                           "Options of force fits; see calibrate/look_up.hpp.")
+      .def_readwrite("degree", &FitOptions::degree)
+      .def_readwrite("through_zero", &FitOptions::through_zero);
   py::class_<NormalFit>(module, "NormalForceFit", "A fitted curve; NormalForce(fit) looks it up.")
       .def_property_readonly("ok", &NormalFit::ok)
       .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
       .def_property_readonly(
-          "coefficients", [](const NormalFit& f) { return cubic(f.curve.coefficients); },
+          "coefficients", [](const NormalFit& f) { return f.curve.coefficients; },
           "c_0 to c_3 of c_0 + c_1 m + ..., N over the measure's unit to the k-th")
       .def_property_readonly(
-          "covariance",
-          [](const NormalFit& f) {
-            std::array<std::array<double, 4>, 4> covariance;
-            std::transform(f.curve.covariance.begin(), f.curve.covariance.begin() + 4,
-                           covariance.begin(), [](const auto& row) { return cubic(row); });
-            return covariance;
-          },
+          "covariance", [](const NormalFit& f) { return f.curve.covariance; },
           "4 x 4 covariance of the coefficients")
       .def_property_readonly(
           "range",
@@ -203,8 +180,7 @@ void bind_shear_fit(py::module_& module) {
       .def_property_readonly("ok", [](const ShearFit& f) { return f.fit.ok(); })
       .def_property_readonly("status", [](const ShearFit& f) { return text_of(f.fit); })
       .def_property_readonly(
-          "stiffness", [](const ShearFit& f) { return f.fit.law.coefficients[0]; },
-          "N/mm, or N mm/rad")
+          "stiffness", [](const ShearFit& f) { return f.fit.law.slope; }, "N/mm, or N mm/rad")
       .def_property_readonly("stiffness_sd",
                              [](const ShearFit& f) { return std::sqrt(f.fit.covariance[0][0]); })
       .def_property_readonly(
@@ -219,19 +195,18 @@ void bind_shear_fit(py::module_& module) {
 void bind_fits(py::module_& module) {
   module.def(
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
-      py::arg("curve") = CurveOptions(), py::arg("options") = FitOptions(),
-      "Fits a cubic curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
+      py::arg("options") = FitOptions(),
+      "Fits a curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
       "NaN: not measured.");
   module.def("fit_tangential_force", &fit_tangential_force, py::arg("measure"),
              py::arg("displacement_mm"), py::arg("tangential_force_n"), py::arg("reference"),
-             py::arg("exponent") = py::none(), py::arg("options") = FitOptions(),
+             py::arg("exponent") = py::none(),
              "Force along the plate, proportional to (measure / reference)^exponent d.\n\n"
              "measure: (n,). displacement_mm: (n, 2). tangential_force_n: (n, 2), N.\n"
              "exponent: fitted if None.");
   module.def("fit_moment", &fit_moment, py::arg("measure"), py::arg("rotation_rad"),
              py::arg("moment_n_mm"), py::arg("reference"), py::arg("exponent") = py::none(),
-             py::arg("options") = FitOptions(),
              "Moment about the contact's normal, likewise. All (n,); rad, N mm.");
 }
 
@@ -247,15 +222,10 @@ void bind_look_up(py::module_& module) {
       .def(py::init(&normal_force_of), py::arg("fit"))
       .def(
           "__call__",
-          [](const NormalForce& force, const Number& measure, const Array& displacement_mm,
-             const Number& rotation_rad) {
-            return force(number_of(measure, "measure"), displacement_of(displacement_mm),
-                         number_of(rotation_rad, "rotation_rad"));
+          [](const NormalForce& force, const Number& measure) {
+            return force(number_of(measure, "measure"));
           },
-          py::arg("measure"), py::arg("displacement_mm") = py::make_tuple(0.0, 0.0),
-          py::arg("rotation_rad") = py::float_(0.0),
-          "result = force(measure, displacement_mm, rotation_rad)\n\n"
-          "measure: mm^2 or mm, as in the fit. displacement_mm: (x, y).");
+          py::arg("measure"), "result = force(measure)\n\nmeasure: mm^2 or mm, as in the fit.");
   py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/look_up.hpp.")
       .def(py::init(&shear_of), py::arg("force"), py::arg("moment"),
            "force, moment: results of fit_tangential_force and fit_moment with the same reference.")

@@ -219,7 +219,6 @@ using Samples = std::vector<Sample>;
 
 constexpr double force_noise_n = 0.05;
 constexpr double reference_mm = 2;
-constexpr fingerpad::FitOptions robust{.robust = true};
 
 /// Forty contacts of various sizes, displaced and rotated, with noise of 0.05 N and 0.05 N mm.
 Samples contacts(Chance& chance) {
@@ -242,17 +241,6 @@ Samples contacts(Chance& chance) {
   return samples;
 }
 
-/// The same contacts, but in every twentieth all forces are off by 1 N, for Huber's loss.
-Samples contacts_with_outliers(Chance& chance) {
-  Samples samples = contacts(chance);
-  for (std::size_t k = 0; k < samples.size(); k += 20) {
-    samples[k].normal_force_n += 1;
-    samples[k].tangential_force_n.x += 1;
-    samples[k].moment_n_mm += 1;
-  }
-  return samples;
-}
-
 Trial normal_force() {
   const auto fit = [](const Samples& samples) {
     const auto found = fingerpad::fit_normal_force(std::span(samples));
@@ -262,19 +250,9 @@ Trial normal_force() {
   return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
 }
 
-Trial robust_normal_force() {
-  const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_normal_force(std::span(samples), {}, robust);
-    return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
-                    block([&](auto i, auto j) { return found.curve.covariance[i][j]; }, {1, 2})};
-  };
-  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.3, contacts_with_outliers,
-               draw_samples, fit);
-}
-
 template <class Fit>
 Estimate of_shear(const Fit& found) {
-  return {{found.law.coefficients[0], found.law.exponent},
+  return {{found.law.slope, found.law.exponent},
           block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
 }
 
@@ -286,50 +264,12 @@ Trial tangential_force() {
                fit);
 }
 
-Trial robust_tangential_force() {
-  const auto fit = [](const Samples& samples) {
-    return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm, {}, robust));
-  };
-  return trial({"force_n_per_mm", "displacement_exponent"}, {2, 0.7}, 1, contacts_with_outliers,
-               draw_samples, fit);
-}
-
 Trial moment() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm));
   };
   return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 0.3, contacts, draw_samples,
                fit);
-}
-
-Trial robust_moment() {
-  const auto fit = [](const Samples& samples) {
-    return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm, {}, robust));
-  };
-  return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 1, contacts_with_outliers,
-               draw_samples, fit);
-}
-
-/// Tangential forces by a matrix, for contacts whose size does not matter.
-Trial linear_shear() {
-  const auto measure = [](Chance& chance) {
-    Samples samples = contacts(chance);
-    for (Sample& s : samples) {
-      const auto d = s.displacement_mm;
-      s.tangential_force_n = {1.9 * d.x - 0.3 * d.y + 0.4 + force_noise_n * chance.normal(),
-                              0.2 * d.x + 2.4 * d.y - 0.25 + force_noise_n * chance.normal()};
-    }
-    return samples;
-  };
-  const auto fit = [](const Samples& samples) {
-    const auto found = fingerpad::fit_linear_shear(std::span(samples));
-    const auto& x = found.x_standard_errors;
-    const auto& y = found.y_standard_errors;
-    return Estimate{{found.map.x_by_x, found.map.x_by_y, found.map.y_by_x, found.map.y_by_y},
-                    diagonal({x[0], x[1], y[0], y[1]})};
-  };
-  return trial({"x_by_x", "x_by_y", "y_by_x", "y_by_y"}, {1.9, -0.3, 0.2, 2.4}, 0.1, measure,
-               draw_samples, fit);
 }
 
 // --- foam
@@ -380,12 +320,8 @@ const std::map<std::string, Trial (*)()>& makers() {
       {"preslip", preslip},
       {"rim", rim},
       {"normal_force", normal_force},
-      {"robust_normal_force", robust_normal_force},
       {"tangential_force", tangential_force},
-      {"robust_tangential_force", robust_tangential_force},
       {"moment", moment},
-      {"robust_moment", robust_moment},
-      {"linear_shear", linear_shear},
       {"taxels", taxels}};
   return all;
 }

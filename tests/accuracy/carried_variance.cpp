@@ -165,7 +165,7 @@ TEST_CASE("variance of a force by look-up is what repeated calibrations scatter 
   const auto truth = force_at(2.0, 0.6, measure, d);
   for (int t = 0; t < trials; ++t) {
     const auto fit = fit_of(dragged(noise_n, random));
-    const auto p = seeded(std::array{fit.law.coefficients[0], fit.law.exponent});
+    const auto p = seeded(std::array{fit.law.slope, fit.law.exponent});
     const auto force = force_at(p[0], p[1], measure, d);
     const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][1]},
                                      {fit.covariance[1][0], fit.covariance[1][1]}};

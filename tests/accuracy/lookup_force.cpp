@@ -288,7 +288,7 @@ namespace {
 
 /// Values for the half of the map that is not tested.
 ShearLaw<> any_law(double coefficient) {
-  return {{coefficient, 0, 0, 0}, 0, 1};
+  return {coefficient, 0, 1};
 }
 
 double reference_of(ContactMeasure measure) {
@@ -302,7 +302,7 @@ double rotation_exponent_of(ContactMeasure measure) {
 
 /// Errors are lengths of difference vectors.
 Errors tangential_errors(const ShearFit<>& fit, double reference, const Samples& samples) {
-  const Shear<> shear({reference, fit.law, any_law(100 * fit.law.coefficients[0])});
+  const Shear<> shear({reference, fit.law, any_law(100 * fit.law.slope)});
   Errors e;
   for (const auto& s : samples) {
     const auto found = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
@@ -313,7 +313,7 @@ Errors tangential_errors(const ShearFit<>& fit, double reference, const Samples&
 }
 
 Errors moment_errors(const ShearFit<>& fit, double reference, const Samples& samples) {
-  const Shear<> shear({reference, any_law(fit.law.coefficients[0] / 100), fit.law});
+  const Shear<> shear({reference, any_law(fit.law.slope / 100), fit.law});
   Errors e;
   for (const auto& s : samples) {
     e.add(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm, s.moment_n_mm);

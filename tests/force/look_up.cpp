@@ -43,11 +43,6 @@ Approx printed(double n) {
 ForceCurve<> line(double slope = 2) {
   return {{0, slope}, 1, 10};
 }
-ForceCurve<> compensated(ForceCurve<> curve, double per_mm_sq, double per_rad_sq = 0) {
-  curve.per_mm_sq = per_mm_sq;
-  curve.per_rad_sq = per_rad_sq;
-  return curve;
-}
 /// A residual of 0 and no other errors, so that forces have a variance.
 ForceCurve<> with_errors(ForceCurve<> curve) {
   curve.residual_sd_n = 0;
@@ -65,8 +60,8 @@ std::string refused(const ShearMap<>& map) {
 ShearMap<> ones(double reference = 1, double of_displacement = 0, double of_rotation = 0) {
   return test::straight_map<double>(reference, of_displacement, of_rotation, 1, 1);
 }
-ShearMap<> bent() {
-  return {1, {{2, 0.5, -0.25, 0}, 0, 1.5}, {{30, 0, 8, 0}, 0, 0.5}};
+ShearMap<> ends() {
+  return {1, {2, 0, 1.5}, {30, 0, 0.5}};
 }
 ShearMap<> slanted() {
   ShearMap<> map = test::straight_map<double>(1, 0, 0, 1, 40);
@@ -99,34 +94,27 @@ TEST_CASE("normal force: the published curves", "[normal_force]") {
     CHECK(by_area(area).status == ForceStatus::measured);
   }
   // by the slope: 0.00016 S + 0.0191, 1.552 D + 0.5563
-  CHECK(by_area.curve().slope(100) == printed(0.0351));
-  CHECK(by_depth.curve().slope(4) == printed(6.7643));
+  CHECK(test::curve_of_area().slope(100) == printed(0.0351));
+  CHECK(test::curve_of_depth().slope(4) == printed(6.7643));
   CHECK(NormalForce(test::curve_of_area<float>())(100.0F).force_n == Approx(3.3342F));
-}
-
-TEST_CASE("normal force: the compensation", "[normal_force]") {
-  const NormalForce force(compensated(line(), 0.02, -3));
-  CHECK(force(4).force_n == 8);
-  CHECK(force(4, {3, 4}).force_n == printed(8 * 1.5));
-  CHECK(force(4, {0, 0}, 0.2).force_n == printed(8 * 0.88));
-  CHECK(force(4, {-4, 3}, -0.2).force_n == printed(8 * 1.38));
-  CHECK(NormalForce(line())(4, {3, 4}, 0.2).force_n == 8);
 }
 
 TEST_CASE("normal force: every degree", "[normal_force]") {
   CHECK(NormalForce(ForceCurve<>{{3, 2}, 1, 10})(4).force_n == 11);
-  CHECK(NormalForce(ForceCurve<>{{1, 0, 0, 2}, 1, 10})(2).force_n == 17);
-  CHECK(NormalForce(ForceCurve<>{{1, 0, 0, 0, 2}, 1, 10})(2).force_n == 33);
-  const ForceCurve<> fifth{{1, 1, 1, 1, 1, 1}, 1, 10};
-  CHECK(NormalForce(fifth)(2).force_n == 63);
-  CHECK(fifth.slope(2) == 1 + 4 + 12 + 32 + 80);
+  const ForceCurve<> cubic{{1, 1, 1, 1}, 1, 10};
+  CHECK(NormalForce(cubic)(2).force_n == 15);
+  CHECK(cubic.slope(2) == 1 + 4 + 12);
+  // 3 - 6 x + 3 x^2 is lowest at 1, between any ends below 1 at the upper one
+  const ForceCurve<> level{{0, 3, -3, 1}, 0.25, 4};
+  CHECK(level.lowest_slope(0.5) == 0);
+  CHECK(level.lowest_slope(2) == 3);
+  CHECK(line().lowest_slope(0) == 2);
 }
 
 TEST_CASE("normal force: no contact, no force", "[normal_force]") {
-  const NormalForce moved(compensated(test::curve_of_area(), 0.1, 2));
   for (const double none : {0.0, -0.0, -1e-300, -3.0, -1e300}) {
     CAPTURE(none);
-    for (const auto& r : {by_area(none), by_depth(none), moved(none, {3, 4}, 0.5)}) {
+    for (const auto& r : {by_area(none), by_depth(none)}) {
       CHECK(r.status == ForceStatus::no_contact);
       CHECK(r.has_force());
       CHECK(r.force_n == 0);
@@ -184,16 +172,6 @@ TEST_CASE("normal force: the variance beyond the range is that of the tangent, a
   CHECK(force(478.001).variance_n2 == Approx(force(478).variance_n2).epsilon(1e-5));
 }
 
-TEST_CASE("normal force: what a compensation makes negative is held at zero", "[normal_force]") {
-  const NormalForce force(compensated(line(), -1));
-  CHECK(force(4, {0.9, 0}).status == ForceStatus::measured);
-  CHECK(force(4, {1.1, 0}).status == ForceStatus::held_at_zero);
-  CHECK(force(0.5, {1.1, 0}).status == ForceStatus::held_at_zero);
-  CHECK(force(11, {1.1, 0}).status == ForceStatus::held_at_zero);
-  CHECK(force(0, {1.1, 0}).status == ForceStatus::no_contact);
-  CHECK(force(11, {1.1, 0}).force_n == 0);
-}
-
 TEST_CASE("normal force: what is no number gives none", "[normal_force]") {
   const auto expect_none = [](const ForceResult<double>& r) {
     CHECK(r.status == ForceStatus::not_finite);
@@ -201,17 +179,9 @@ TEST_CASE("normal force: what is no number gives none", "[normal_force]") {
     CHECK(std::isnan(r.force_n));
     CHECK(std::isnan(r.variance_n2));
   };
-  const NormalForce moved(compensated(with_errors(line()), 0.1, 0.1));
   for (const double bad : {missing, infinity, -infinity}) {
     CAPTURE(bad);
     expect_none(by_area(bad));
-    expect_none(moved(bad));
-    expect_none(moved(4, {bad, 0}));
-    expect_none(moved(4, {0, bad}));
-    expect_none(moved(4, {0, 0}, bad));
-    expect_none(moved(0, {0, 0}, bad));  // even without contact: no force was computed
-    // unused input does no harm
-    CHECK(by_area(100, {bad, bad}, bad).force_n == by_area(100).force_n);
   }
   expect_none(ForceResult<double>());
   // what overflows
@@ -236,10 +206,10 @@ TEST_CASE("normal force: curves that are refused", "[normal_force]") {
   CHECK(refused(C{{0, 1}, 2, infinity}) == owner + "to = inf, must be finite and > 2");
   // at either end and in between
   const std::string slope = owner + "slope within the range = ";
-  CHECK(begins_with(refused(C{{0, 1, -0.25}, 1, 3}), slope + "-0.0625"));
+  CHECK(begins_with(refused(C{{0, 1, -0.25}, 1, 3}), slope + "-0.5"));
   CHECK(begins_with(refused(C{{0, -3, 1}, 1, 3}), slope + "-1"));
   CHECK(begins_with(refused(C{{1, -1}, 1, 3}), slope + "-1"));
-  CHECK(begins_with(refused(C{{0, 11, -6, 1}, 1, 3}), slope + "-0.25"));
+  CHECK(begins_with(refused(C{{0, 11, -6, 1}, 1, 3}), slope + "-1"));
   CHECK(refused(C{{0, 12, -6, 1}, 1, 3}) == "accepted");
   CHECK(refused(C{{3}, 1, 3}) == "accepted");  // constant
   CHECK(begins_with(refused(C{{0, 1e308, 1e308}, 1, 10}), owner + "force at to = inf"));
@@ -248,10 +218,6 @@ TEST_CASE("normal force: curves that are refused", "[normal_force]") {
   CHECK(NormalForce(C{{1, 1}, 1e-310, 10})(0).force_n == 0);
   // a constant curve does not fall, whatever its sign
   CHECK(NormalForce(C{{-3}, 1, 3})(2).status == ForceStatus::held_at_zero);
-  // compensation
-  CHECK(refused(compensated(line(), -3, 4)) == "accepted");
-  CHECK(refused(compensated(line(), missing)) == owner + "per_mm_sq = nan, must be finite");
-  CHECK(refused(compensated(line(), 0, -infinity)) == owner + "per_rad_sq = -inf, must be finite");
 }
 
 TEST_CASE("normal force: errors that are refused", "[normal_force]") {
@@ -261,29 +227,17 @@ TEST_CASE("normal force: errors that are refused", "[normal_force]") {
     change(curve);
     return refused(curve);
   };
-  const auto correlated = [&](double a, double b, double both, double other) {
-    return with([&](auto& c) {
-      c.covariance[1][1] = a, c.covariance[2][2] = b;
-      c.covariance[1][2] = both, c.covariance[2][1] = other;
-    });
+  const auto of_variance = [&](double variance) {
+    return with([&](auto& c) { c.covariance[2][2] = variance; });
   };
-  CHECK(correlated(1, 1, 0.5, 0.5) == "accepted");
-  CHECK(correlated(1e-9, 1e-2, 1e-6, 1e-6) == "accepted");
-  CHECK(correlated(1, 4, 2.001, 2.001) == owner + "covariance has a correlation above 1");
-  CHECK(correlated(1, 4, 0, -3) == owner + "covariance has a correlation above 1");
-  CHECK(correlated(0, 1, 0.5, 0.5) == owner + "covariance has a correlation above 1");
-  CHECK(correlated(1, 1, missing, 0) == owner + "covariance has a correlation above 1");
-  CHECK(begins_with(correlated(1, -0.5, 0, 0), owner + "variance of a coefficient = -0.5"));
-  CHECK(begins_with(correlated(infinity, 1, 0, 0), owner + "variance of a coefficient = inf"));
+  CHECK(of_variance(1e-9) == "accepted");
+  CHECK(begins_with(of_variance(-0.5), owner + "variance of a coefficient = -0.5"));
+  CHECK(begins_with(of_variance(infinity), owner + "variance of a coefficient = inf"));
   CHECK(with([](auto& c) { c.residual_sd_n = -1; }) ==
         owner + "residual_sd_n = -1, must be finite and >= 0");
   CHECK(with([](auto& c) { c.residual_sd_n = infinity; }) ==
         owner + "residual_sd_n = inf, must be finite and >= 0");
   CHECK(with([](auto& c) { c.residual_sd_n = missing; }) == "accepted");  // no variance
-  CHECK(with([](auto& c) { c.measure_sd = -0.25; }) ==
-        owner + "measure_sd = -0.25, must be finite and >= 0");
-  CHECK(with([](auto& c) { c.measure_sd = missing; }) ==
-        owner + "measure_sd = nan, must be finite and >= 0");
 }
 
 TEST_CASE("normal force: variance by hand", "[normal_force]") {
@@ -298,17 +252,9 @@ TEST_CASE("normal force: variance by hand", "[normal_force]") {
   CHECK(variance(4) == printed(by_parameters));
   curve.residual_sd_n = 0.5;
   CHECK(variance(4) == printed(by_parameters + 0.25));
-  curve.measure_sd = 0.3;
-  CHECK(variance(4) == printed(by_parameters + 0.25 + 0.36));
+  CHECK(NormalForce(curve)(4, 0.09).variance_n2 == printed(by_parameters + 0.25 + 0.36));
   CHECK(variance(0) == 0.25);
   CHECK(variance(-3) == 0.25);
-  // noise of this measure alone adds to it
-  CHECK(NormalForce(curve)(4, {0, 0}, 0, 0.25).variance_n2 ==
-        printed(by_parameters + 0.25 + 0.36 + 1));
-  // a compensation's gain multiplies all terms but the residual
-  const NormalForce doubled(compensated(curve, 1));
-  CHECK(doubled(4, {1, 0}).variance_n2 == printed(4 * (by_parameters + 0.36) + 0.25));
-  CHECK(doubled(4, {0, 0}).variance_n2 == printed(by_parameters + 0.25 + 0.36));
   // no variance without errors
   CHECK(std::isnan(by_area(100).variance_n2));
 }
@@ -338,7 +284,7 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
   const auto exact_both = fused(at(3, 0), at(5, 0));
   CHECK(exact_both.force_n == 4);
   CHECK(exact_both.variance_n2 == 0);
-  CHECK(std::isnan(exact_both.disagreement));
+  CHECK(exact_both.disagreement == -infinity);
   // only one force is usable
   for (const R& lacking :
        {R{}, at(9, missing), at(9, infinity), R{ForceStatus::not_finite, missing, 1}}) {
@@ -359,7 +305,7 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
   CHECK(fused(at(3, 0.5), R{}).status == ForceStatus::measured);
   CHECK_FALSE(fused(R{}, R{}).ok());
   CHECK(fused(at(3, 0.5), at(6.1, 0.5)).status == ForceStatus::disagreeing);
-  CHECK(fused(at(3, 0.5), at(6.1, 0.5), 4).ok());
+  CHECK(fused(at(3, 0.5), at(5.9, 0.5)).ok());
   CHECK(exact_both.status == ForceStatus::disagreeing);
   // an implausible one counts even without a variance
   CHECK(fused(at(3, 0.5), R{ForceStatus::implausible, 1e7}).status == ForceStatus::implausible);
@@ -370,17 +316,17 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
 TEST_CASE("normal force: forces by area and by depth that agree, fused", "[normal_force]") {
   ForceCurve<> of_area = test::curve_of_area(), of_depth = test::curve_of_depth();
   of_area.covariance[0][0] = of_depth.covariance[0][0] = 0.01;
-  of_area.residual_sd_n = 0.5, of_area.measure_sd = 5;
-  of_depth.residual_sd_n = 0.27, of_depth.measure_sd = 0.02;
+  of_area.residual_sd_n = 0.5;
+  of_depth.residual_sd_n = 0.27;
   const NormalForce area(of_area), depth(of_depth);
-  const auto a = area(225), d = depth(3);  // 9.0 and 9.0 N
+  const auto a = area(225, 25), d = depth(3, 0.0004);  // 9.0 and 9.0 N
   const auto both = fused(a, d);
   CHECK(both.force_n > (std::min)(a.force_n, d.force_n));
   CHECK(both.force_n < (std::max)(a.force_n, d.force_n));
   CHECK(both.variance_n2 < (std::min)(a.variance_n2, d.variance_n2));
   CHECK(std::abs(both.disagreement) < 1);
   // a sharper object: as deep, but half the area
-  CHECK(std::abs(fused(area(110), depth(3)).disagreement) > 3);
+  CHECK(std::abs(fused(area(110, 25), depth(3, 0.0004)).disagreement) > 3);
 }
 
 // ---- normal force, laws for every curve
@@ -403,7 +349,7 @@ ForceCurve<> any_rising(int degree) {
   return curve;
 }
 ForceCurve<> any_rising() {
-  return any_rising(static_cast<int>(test::whole(1, 5)));
+  return any_rising(static_cast<int>(test::whole(1, 3)));
 }
 
 /// Any valid quadratic: its slope is not negative at either end; all else is free.
@@ -417,17 +363,6 @@ ForceCurve<> any_quadratic() {
 ForceCurve<> any_curve() {
   return test::whole(0, 1) == 0 ? any_rising() : any_quadratic();
 }
-/// With a compensation in three of four cases.
-ForceCurve<> any_compensated(ForceCurve<> curve) {
-  return test::whole(0, 3) == 0
-             ? curve
-             : compensated(curve, test::uniform(-0.2, 0.2), test::uniform(-20, 20));
-}
-
-Vector any_displacement() {
-  return {test::uniform(-4, 4), test::uniform(-4, 4)};
-}
-
 /// Largest change of f between neighbouring numbers that bisection finds: it keeps the half in
 /// which f changes more, until a single step is left.
 template <class F>
@@ -461,7 +396,7 @@ double scale_of(const ForceCurve<>& curve) {
 TEST_CASE("normal force: never negative, and the status says where it is from",
           "[normal_force][law]") {
   rc::prop("for any finite numbers", [] {
-    const auto curve = any_compensated(any_curve());
+    const auto curve = any_curve();
     const NormalForce force(curve);
     const auto any = [](double largest) {
       return test::whole(0, 4) > 0 ? test::uniform(-largest, largest)
@@ -471,16 +406,7 @@ TEST_CASE("normal force: never negative, and the status says where it is from",
     const double measure = test::whole(0, 9) == 0   ? curve.from
                            : test::whole(0, 9) == 0 ? curve.to
                                                     : any(1.5 * curve.to);
-    const Vector displacement{any(5), any(5)};
-    const double rotation = any(0.5);
-    const auto r = force(measure, displacement, rotation);
-    if (r.status == ForceStatus::not_finite) {  // squares of displacements times the force overflow
-      RC_ASSERT(curve.per_mm_sq != 0 || curve.per_rad_sq != 0);
-      RC_ASSERT(std::max({std::abs(displacement.x), std::abs(displacement.y),
-                          std::abs(rotation)}) >= 1e100);
-      RC_ASSERT(std::isnan(r.force_n));
-      return;
-    }
+    const auto r = force(measure);
     RC_ASSERT(r.has_force());
     RC_ASSERT(r.force_n >= 0);
     RC_ASSERT((r.status == ForceStatus::no_contact) == (measure <= 0));
@@ -490,56 +416,44 @@ TEST_CASE("normal force: never negative, and the status says where it is from",
     RC_ASSERT(r.status != ForceStatus::below_range || (measure > 0 && measure < curve.from));
     RC_ASSERT(r.status != ForceStatus::beyond_range || measure > curve.to);
   });
-  rc::prop("and none without contact, whatever moves", [] {
-    const NormalForce force(any_compensated(any_curve()));
+  rc::prop("and none without contact", [] {
+    const NormalForce force(any_curve());
     const double none = test::whole(0, 3) == 0 ? 0 : -test::log_uniform(1e-150, 1e150);
-    const auto r = force(none, any_displacement(), test::uniform(-1, 1));
+    const auto r = force(none);
     RC_ASSERT(r.status == ForceStatus::no_contact);
     RC_ASSERT(r.force_n == 0);
   });
 }
 
 TEST_CASE("normal force: no step anywhere", "[normal_force][law]") {
-  rc::prop("in the measure, the displacement and the angle", [] {
-    const auto curve = any_compensated(any_curve());
+  rc::prop("in the measure", [] {
+    const auto curve = any_curve();
     const NormalForce force(curve);
-    const Vector displacement = any_displacement();
-    const double rotation = test::uniform(-0.3, 0.3);
-    const auto of_measure = [&](double m) { return force(m, displacement, rotation).force_n; };
+    const auto of_measure = [&](double m) { return force(m).force_n; };
     const double width = 1e-5 * curve.from;
     for (const double measure : {0.0, curve.from, curve.to, test::uniform(0, 1) * curve.from,
                                  test::uniform(0, 1.5) * curve.to}) {
       RC_ASSERT(no_step_at(of_measure, measure, width));
     }
-    const double measure = test::uniform(0.5, 1.2) * curve.to;
-    const auto of_x = [&](double x) { return force(measure, {x, 0.5}, rotation).force_n; };
-    const auto of_angle = [&](double t) { return force(measure, displacement, t).force_n; };
-    for (const double share : {-1.0, 0.0, 1.0, test::uniform(-1.5, 1.5)}) {
-      RC_ASSERT(no_step_at(of_x, share, 1e-5));
-      RC_ASSERT(no_step_at(of_angle, 0.02 * share, 1e-7));
-    }
   });
   rc::prop("from no contact on, by the square of the measure at least", [] {
-    const auto curve = any_compensated(any_rising());
+    const auto curve = any_rising();
     const NormalForce force(curve);
-    const Vector displacement = any_displacement();
     for (const double share : {1e-2, 1e-4, 1e-8}) {
-      RC_ASSERT(force(share * curve.from, displacement).force_n <=
+      RC_ASSERT(force(share * curve.from).force_n <=
                 3 * share * share * 10 * (scale_of(curve) + 30));
     }
   });
 }
 
 TEST_CASE("normal force: a larger contact presses no less", "[normal_force][law]") {
-  rc::prop("with the same motion, from no contact to beyond the range", [] {
-    const auto curve = any_compensated(any_rising());
+  rc::prop("from no contact to beyond the range", [] {
+    const auto curve = any_rising();
     const NormalForce force(curve);
-    const Vector displacement = any_displacement();
-    const double rotation = test::uniform(-0.3, 0.3);
     const double top = test::whole(0, 1) == 0 ? 1.5 * curve.to : 1.5 * curve.from;
     const double a = test::uniform(-0.1, 1) * top, b = test::uniform(-0.1, 1) * top;
-    const double less = force((std::min)(a, b), displacement, rotation).force_n;
-    const double more = force((std::max)(a, b), displacement, rotation).force_n;
+    const double less = force((std::min)(a, b)).force_n;
+    const double more = force((std::max)(a, b)).force_n;
     RC_ASSERT(less <= more * (1 + 64 * ulp));
   });
   rc::prop("by any accepted quadratic from the start of its range on, along a line beyond it", [] {
@@ -555,58 +469,25 @@ TEST_CASE("normal force: a larger contact presses no less", "[normal_force][law]
   });
 }
 
-TEST_CASE("normal force: the compensation multiplies, and knows no direction",
-          "[normal_force][law]") {
-  rc::prop("nor anything where nothing moved", [] {
-    const auto plain = any_rising(), curve = any_compensated(plain);
-    const NormalForce force(curve);
-    const double measure = test::uniform(0, 1.5) * curve.to;
-    const double still = NormalForce(plain)(measure).force_n;
-    RC_ASSERT(force(measure).force_n == still);
-    RC_ASSERT(force(measure, {-0.0, 0.0}, -0.0).force_n == still);
-    const Vector d = any_displacement();
-    const double rotation = test::uniform(-0.3, 0.3);
-    const double moved = force(measure, d, rotation).force_n;
-    const double factor =
-        1 + curve.per_mm_sq * squared_norm(d) + curve.per_rad_sq * rotation * rotation;
-    const double expected = (std::max)(0.0, factor * still);
-    RC_ASSERT(std::abs(moved - expected) <= 1e-14 * 10 * still);
-    // mirrored, rotated by a right angle, twisted the other way: equal to the last bit
-    for (const Vector& other : {Vector{-d.x, d.y}, Vector{d.x, -d.y}, Vector{-d.x, -d.y},
-                                Vector{d.y, d.x}, Vector{-d.y, d.x}}) {
-      RC_ASSERT(force(measure, other, rotation).force_n == moved);
-      RC_ASSERT(force(measure, other, -rotation).force_n == moved);
-    }
-    const double turn = test::uniform(-3, 3), c = std::cos(turn), s = std::sin(turn);
-    const double rotated = force(measure, {c * d.x - s * d.y, s * d.x + c * d.y}, rotation).force_n;
-    RC_ASSERT(std::abs(rotated - moved) <= 1e-12 * (100 + 10 * scale_of(curve) + moved));
-  });
-}
-
 TEST_CASE("normal force: units do not matter", "[normal_force][law]") {
   rc::prop("to the last bit, if they differ by powers of 2", [] {
-    auto curve = any_compensated(any_rising());
+    auto curve = any_rising();
     curve.residual_sd_n = test::uniform(0, 1);
-    curve.measure_sd = test::uniform(0, 1);
     curve.covariance[0][0] = test::uniform(0, 1);
     const auto unit = [] { return std::ldexp(1.0, static_cast<int>(test::whole(-9, 9))); };
-    const double area = unit(), newton = unit(), length = unit(), angle = unit();
+    const double area = unit(), newton = unit(), noise = test::uniform(0, 1);
     auto other = curve;
     double power = newton;
     for (double& c : other.coefficients) {
       c *= power;
       power /= area;
     }
-    other.from *= area, other.to *= area, other.measure_sd *= area;
+    other.from *= area, other.to *= area;
     other.residual_sd_n *= newton;
     other.covariance[0][0] *= newton * newton;
-    other.per_mm_sq /= length * length;
-    other.per_rad_sq /= angle * angle;
     const double m = test::uniform(0, 1.5) * curve.to;
-    const Vector d = any_displacement();
-    const double t = test::uniform(-0.3, 0.3);
-    const auto a = NormalForce(curve)(m, d, t);
-    const auto b = NormalForce(other)(m * area, length * d, t * angle);
+    const auto a = NormalForce(curve)(m, noise);
+    const auto b = NormalForce(other)(m * area, noise * area * area);
     RC_ASSERT(a.status == b.status || b.status == ForceStatus::implausible);
     RC_ASSERT(a.force_n * newton == b.force_n);
     RC_ASSERT(a.variance_n2 * newton * newton == b.variance_n2);
@@ -649,31 +530,27 @@ TEST_CASE("normal force: the variance is that of parameters and measures drawn a
   // it. Terms of higher order are below 0.1 %, because the errors of the parameters are small.
   constexpr int draws = 4000;
   const double margin = 4 * std::sqrt(2.0 / draws);
-  const Vector displacement{1.5, 2};
   Spread spread;
   spread.factor = {{{0.02, 0, 0}, {-1e-4, 2e-4, 0}, {1e-7, -3e-7, 2e-7}}};
   for (const double measure : {9.0, 40.0, 450.0}) {
     for (const double noise : {0.0, 1.0}) {
-      for (const auto& plain :
-           {test::curve_of_area(), compensated(test::curve_of_area(), 0.05, 3)}) {
-        CAPTURE(measure, noise, plain.per_mm_sq);
-        auto curve = spread.with_covariance(plain);
-        curve.residual_sd_n = 0.02 * noise;
-        curve.measure_sd = 0.3 * noise;
-        const auto said = NormalForce(curve)(measure, displacement, -0.1);
-        test::Random random(static_cast<std::uint64_t>(1000 * measure));
-        double sum = 0, sum_sq = 0;
-        for (int k = 0; k < draws; ++k) {
-          const NormalForce other(spread.moved(plain, random));
-          const double at = measure + curve.measure_sd * random.normal();
-          const double off = other(at, displacement, -0.1).force_n +
-                             curve.residual_sd_n * random.normal() - said.force_n;
-          sum += off;
-          sum_sq += off * off;
-        }
-        const double mean = sum / draws;
-        CHECK(said.variance_n2 / (sum_sq / draws - mean * mean) == Approx(1).epsilon(margin));
+      CAPTURE(measure, noise);
+      const ForceCurve<> plain = test::curve_of_area();
+      auto curve = spread.with_covariance(plain);
+      curve.residual_sd_n = 0.02 * noise;
+      const double measure_sd = 0.3 * noise;
+      const auto said = NormalForce(curve)(measure, square(measure_sd));
+      test::Random random(static_cast<std::uint64_t>(1000 * measure));
+      double sum = 0, sum_sq = 0;
+      for (int k = 0; k < draws; ++k) {
+        const NormalForce other(spread.moved(plain, random));
+        const double at = measure + measure_sd * random.normal();
+        const double off = other(at).force_n + curve.residual_sd_n * random.normal() - said.force_n;
+        sum += off;
+        sum_sq += off * off;
       }
+      const double mean = sum / draws;
+      CHECK(said.variance_n2 / (sum_sq / draws - mean * mean) == Approx(1).epsilon(margin));
     }
   }
 }
@@ -692,9 +569,9 @@ TEST_CASE("normal force: a variance is never negative, and more noise is no less
     }
     auto curve = spread.with_covariance(plain);
     curve.residual_sd_n = test::uniform(0, 1);
-    curve.measure_sd = test::uniform(0, 0.1) * curve.from;
+    double measure_sd = test::uniform(0, 0.1) * curve.from;
     const double m = test::uniform(-0.1, 1.5) * curve.to;
-    const auto variance = [&] { return NormalForce(curve)(m).variance_n2; };
+    const auto variance = [&] { return NormalForce(curve)(m, square(measure_sd)).variance_n2; };
     const double before = variance();
     const double floor = square(curve.residual_sd_n);
     RC_ASSERT(before >= floor - 1e-13 * (1 + before));
@@ -702,7 +579,7 @@ TEST_CASE("normal force: a variance is never negative, and more noise is no less
     curve.covariance[0][0] += 0.5;
     const double with_covariance = variance();
     RC_ASSERT(with_covariance >= before);
-    curve.measure_sd *= 2;
+    measure_sd *= 2;
     const double with_noise = variance();
     RC_ASSERT(with_noise >= with_covariance);
     curve.residual_sd_n += 1;
@@ -787,7 +664,6 @@ TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
       CHECK(r.status == (f.measure >= 1e6                  ? ForceStatus::implausible
                          : f.measure < map.reference / 100 ? ForceStatus::below_range
                                                            : ForceStatus::measured));
-      CHECK(shear_factor(f.measure, map.reference, map.force.exponent) == r.tangential_force_n.x);
     }
   };
   // 2^20 to the 0.65 is 2^13, to the 1.7 is 2^34; 2^20 to the 0.75 is 2^15, to the 2.2 is 2^44
@@ -820,47 +696,6 @@ TEST_CASE("shear: without exponents the size does not matter", "[shear]") {
     CHECK(r.moment_n_mm == 0.1);
   }
   CHECK(shear(0.0, {0.7, -0.2}, 0.1).tangential_force_n.x == 0);
-}
-
-TEST_CASE("shear: a factor exists only in contact", "[shear]") {
-  for (const double measure : {0.0, -0.0, -1.0, -infinity, missing}) {
-    for (const double exponent : {0.65, 0.0, -1.0}) {
-      CHECK(shear_factor(measure, 100.0, exponent) == 0);
-    }
-  }
-  CHECK(shear_factor(400.0, 100.0, 0.0) == 1);
-  CHECK(shear_factor(400.0, 100.0, -0.5) == Approx(0.5));
-}
-
-TEST_CASE("shear: a polynomial along the displacement, and its tangent beyond", "[shear]") {
-  const Shear shear(bent());
-  // |d| = 1: 2 + 0.5 - 0.25
-  auto r = shear(1.0, {0.6, -0.8}, -0.25);
-  CHECK(r.tangential_force_n.x == Approx(2.25 * 0.6).epsilon(1e-15));
-  CHECK(r.tangential_force_n.y == Approx(-2.25 * 0.8).epsilon(1e-15));
-  CHECK(r.moment_n_mm == Approx(-(30 * 0.25 + 8 * 0.015625)).epsilon(1e-15));
-  CHECK(r.status == ForceStatus::measured);
-  // |d| = 2.5, identified up to 1.5: 3.28125 there, with the slope 2 + 1.5 - 0.75 * 2.25
-  r = shear(1.0, {-1.5, 2}, 0);
-  CHECK(std::hypot(r.tangential_force_n.x, r.tangential_force_n.y) ==
-        Approx(3.28125 + 1.8125).epsilon(1e-15));
-  CHECK(r.tangential_force_n.x < 0);
-  CHECK(r.tangential_force_n.y > 0);
-  CHECK(r.status == ForceStatus::beyond_range);
-  // 0.5: 15 + 1, slope 30 + 6
-  r = shear(1.0, {0, 0}, 0.75);
-  CHECK(r.moment_n_mm == Approx(16 + 0.25 * 36).epsilon(1e-15));
-  CHECK(r.status == ForceStatus::beyond_range);
-  // the end itself is within the range
-  r = shear(1.0, {0, 1.5}, -0.5);
-  CHECK(r.status == ForceStatus::measured);
-  CHECK(r.tangential_force_n.y == Approx(3.28125).epsilon(1e-15));
-  CHECK(r.moment_n_mm == Approx(-16).epsilon(1e-15));
-  // no displacement, no force
-  r = shear(1.0, {0, 0}, 0);
-  CHECK(r.tangential_force_n.x == 0);
-  CHECK(r.moment_n_mm == 0);
-  CHECK(r.status == ForceStatus::measured);
 }
 
 TEST_CASE("shear: a straight line needs no range, but reports the one it has", "[shear]") {
@@ -914,7 +749,7 @@ TEST_CASE("shear: any linear map", "[shear]") {
 }
 
 TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {
-  ShearMap<> map = bent();
+  ShearMap<> map = ends();
   map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
   for (const double measure : {0.0, -0.0, -1e-300, -7.0, -1e300}) {
     for (const double size : {0.0, 0.1, 1.0, 1e6}) {
@@ -930,7 +765,7 @@ TEST_CASE("shear: without contact there is no force, whatever is displaced", "[s
 }
 
 TEST_CASE("shear: force and moment fail each by itself", "[shear]") {
-  const Shear shear(bent());
+  const Shear shear(ends());
   const auto good = shear(80.0, {0.2, -0.1}, 0.05);
   const auto no_force = [](const ShearResult<double>& r) {
     return r.status == ForceStatus::not_finite && !r.has_force() &&
@@ -941,18 +776,17 @@ TEST_CASE("shear: force and moment fail each by itself", "[shear]") {
   };
   for (const double bad : {missing, infinity, -infinity}) {
     CAPTURE(bad);
-    for (const double measure : {80.0, 0.0}) {
-      for (const auto& d : {Vector{bad, 0.1}, {0.1, bad}, {bad, bad}, {bad, -bad}}) {
-        const auto r = shear(measure, d, 0.05);
-        CHECK(no_force(r));
-        CHECK(r.has_moment());
-        CHECK(r.moment_n_mm == (measure > 0 ? good.moment_n_mm : 0));
-      }
-      const auto r = shear(measure, {0.2, -0.1}, bad);
-      CHECK(no_moment(r));
-      CHECK(r.has_force());
-      CHECK(r.tangential_force_n.x == (measure > 0 ? good.tangential_force_n.x : 0));
+    for (const auto& d : {Vector{bad, 0.1}, {0.1, bad}, {bad, bad}, {bad, -bad}}) {
+      const auto r = shear(80.0, d, 0.05);
+      CHECK(no_force(r));
+      CHECK(r.has_moment());
+      CHECK(r.moment_n_mm == good.moment_n_mm);
+      CHECK(shear(0.0, d, bad).status == ForceStatus::no_contact);
     }
+    const auto turned = shear(80.0, {0.2, -0.1}, bad);
+    CHECK(no_moment(turned));
+    CHECK(turned.has_force());
+    CHECK(turned.tangential_force_n.x == good.tangential_force_n.x);
     const auto r = shear(bad, {0.2, -0.1}, 0.05);
     CHECK(no_force(r));
     CHECK(no_moment(r));
@@ -968,9 +802,9 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
     return refused(map);
   };
   CHECK(refused(ones()) == "accepted");
-  CHECK(refused(bent()) == "accepted");
+  CHECK(refused(ends()) == "accepted");
   CHECK(refused(slanted()) == "accepted");
-  CHECK(refused(ShearMap<>()) == "ShearMap: force: c_1 = nan, must be finite and >= 0");
+  CHECK(refused(ShearMap<>()) == "ShearMap: force: slope = nan, must be finite and >= 0");
   for (const double bad : {0.0, -100.0, infinity, missing}) {
     CHECK(begins_with(with(ones(), [&](auto& m) { m.reference = bad; }), "ShearMap: reference = "));
   }
@@ -980,29 +814,21 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
       CHECK(begins_with(with(slanted(), [&](auto& m) { m.*field = bad; }), "ShearMap: "));
       CHECK(with(slanted(), [&](auto& m) { m.*field = -3; }) == "accepted");
     }
-    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.x = bad; }),
-                      "ShearMap: offset_n.x = "));
-    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.y = bad; }),
-                      "ShearMap: offset_n.y = "));
+    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.x = bad; }), "ShearMap: K or"));
+    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.y = bad; }), "ShearMap: K or"));
   }
   for (ShearLaw<> ShearMap<>::*const law : {&ShearMap<>::force, &ShearMap<>::moment}) {
     const std::string owner =
         law == &ShearMap<>::force ? "ShearMap: force: " : "ShearMap: moment: ";
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (const double bad : {infinity, missing}) {
-        CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).coefficients[k] = bad; }),
-                          owner + "c_" + std::to_string(k + 1) + " = "));
-      }
+    for (const double bad : {infinity, missing, -2.5}) {
+      CHECK(begins_with(with(ends(), [&](auto& m) { (m.*law).slope = bad; }), owner + "slope = "));
     }
-    CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).coefficients[0] = -2.5; }),
-                      owner + "c_1 = -2.5, must be"));
-    CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).exponent = infinity; }),
+    CHECK(begins_with(with(ends(), [&](auto& m) { (m.*law).exponent = infinity; }),
                       owner + "exponent = inf"));
-    for (const double bad : {0.0, -1.0, infinity, missing}) {
-      CHECK(begins_with(with(bent(), [&](auto& m) { (m.*law).to = bad; }), owner + "to = "));
-      const std::string straight = with(ones(), [&](auto& m) { (m.*law).to = bad; });
-      CHECK(begins_with(straight, std::isnan(bad) ? "accepted" : owner + "to = "));
+    for (const double bad : {0.0, -1.0, infinity}) {
+      CHECK(begins_with(with(ends(), [&](auto& m) { (m.*law).to = bad; }), owner + "to = "));
     }
+    CHECK(with(ends(), [&](auto& m) { (m.*law).to = missing; }) == "accepted");
   }
 }
 
@@ -1020,24 +846,13 @@ TEST_CASE("look-ups are values of some numbers", "[normal_force][shear]") {
 namespace {
 
 template <class S = double>
-ShearLaw<S> any_law(int degree) {
-  ShearLaw<S> law;
-  for (int k = 0; k < degree; ++k) {
-    law.coefficients[static_cast<std::size_t>(k)] = static_cast<S>(test::log_uniform(0.1, 100));
-  }
-  law.to = static_cast<S>(test::log_uniform(0.05, 5));
-  return law;
-}
-template <class S = double>
-ShearMap<S> any_map(int degree) {
-  ShearMap<S> map{S(1), any_law<S>(degree), any_law<S>(degree)};
+ShearMap<S> any_map() {
+  const auto law = [](double slope) {
+    return ShearLaw<S>{static_cast<S>(slope), S(0), static_cast<S>(test::log_uniform(0.05, 5))};
+  };
+  const double slope = test::log_uniform(0.1, 100);
   // for a contact between 0.6 and 60 mm
-  map.moment.coefficients[0] =
-      map.force.coefficients[0] * static_cast<S>(square(test::log_uniform(0.6, 60)));
-  return map;
-}
-ShearMap<> any_map() {
-  return any_map(static_cast<int>(test::whole(1, 4)));
+  return {S(1), law(slope), law(slope * square(test::log_uniform(0.6, 60)))};
 }
 template <class S>
 ShearMap<S> normalised(ShearMap<S> map) {
@@ -1117,7 +932,7 @@ TEST_CASE("shear: a round pad looks the same from every side", "[shear][law]") {
   });
 }
 
-TEST_CASE("shear: a pad that stiffens", "[shear][law]") {
+TEST_CASE("shear: straight lines", "[shear][law]") {
   rc::prop("pulls harder the further it is carried, and by a larger contact", [] {
     const Shear shear(normalised(any_map()));
     const double measure = any_measure(), theta = any_rotation();
@@ -1130,31 +945,8 @@ TEST_CASE("shear: a pad that stiffens", "[shear][law]") {
       RC_ASSERT(std::abs(large.moment_n_mm) > std::abs(small.moment_n_mm));
     }
   });
-  rc::prop("goes on without a jump or a kink at the end of the range, then straight", [] {
-    const auto map = any_map();
-    const Shear shear(map);
-    const double angle = test::uniform(-std::numbers::pi, std::numbers::pi);
-    const auto force = [&](double size) {
-      return length(shear(1.0, rotated({size, 0}, angle), 0).tangential_force_n);
-    };
-    const auto moment = [&](double size) { return shear(1.0, {0, 0}, size).moment_n_mm; };
-    const auto smooth = [](const auto& f, double to) {
-      const double h = 1e-5 * to;
-      const double below = (f(to) - f(to - h)) / h, above = (f(to + h) - f(to)) / h;
-      const double step = (f(to * (1 + 4 * ulp)) - f(to * (1 - 4 * ulp)));
-      return std::abs(above - below) < 2e-4 * above && std::abs(step) < 100 * ulp * f(to);
-    };
-    RC_ASSERT(smooth(force, map.force.to));
-    RC_ASSERT(smooth(moment, map.moment.to));
-    const auto slope = [&](double share) {
-      const double a = share * map.force.to, b = 1.5 * a;
-      return (force(b) - force(a)) / (b - a);
-    };
-    const double first = slope(1.001);
-    RC_ASSERT(near(slope(test::uniform(1.01, 100)), first, first, 2e4));
-  });
   rc::prop("lets go without a jump where its contact vanishes", [] {
-    const Shear shear(normalised(any_map(2)));
+    const Shear shear(normalised(any_map()));
     const auto d = any_shift();
     const double theta = any_rotation();
     const auto gone = shear(0.0, d, theta);
@@ -1163,7 +955,7 @@ TEST_CASE("shear: a pad that stiffens", "[shear][law]") {
     double moment = std::abs(shear(1.0, d, theta).moment_n_mm);
     for (double measure = 0.1; measure > 1e-60; measure *= 0.1) {
       const auto r = shear(measure, d, theta);
-      // the exponents are at least 0.2, and the odd polynomials at least linear
+      // the exponents are at least 0.2
       RC_ASSERT(length(r.tangential_force_n) < 0.64 * force);
       RC_ASSERT(std::abs(r.moment_n_mm) < 0.64 * moment);
       force = length(r.tangential_force_n);
@@ -1182,7 +974,7 @@ TEST_CASE("shear: linear maps", "[shear][law]") {
     const auto d = any_shift(), e = any_shift();
     const auto a = shear(measure, d, theta), b = shear(measure, e, eta);
     const auto both = shear(measure, {d.x + s * e.x, d.y + s * e.y}, theta + s * eta);
-    const double factor = shear_factor(measure, map.reference, map.force.exponent);
+    const double factor = std::pow(measure / map.reference, map.force.exponent);
     const double scale = 20 * factor * (length(d) + std::abs(s) * length(e));
     const auto &fa = a.tangential_force_n, &fb = b.tangential_force_n;
     RC_ASSERT(near(both.tangential_force_n.x, fa.x + s * fb.x, scale, 10));
@@ -1198,7 +990,7 @@ TEST_CASE("shear: linear maps", "[shear][law]") {
 
 TEST_CASE("shear: the normalisation", "[shear][law]") {
   rc::prop("does not depend on the unit of the measure", [] {
-    auto map = normalised(any_map(2));
+    auto map = normalised(any_map());
     const double measure = any_measure(), theta = any_rotation();
     const auto d = any_shift();
     const auto a = Shear(map)(measure, d, theta);
@@ -1229,38 +1021,19 @@ TEST_CASE("shear: the normalisation", "[shear][law]") {
     RC_ASSERT(near(large.moment_n_mm, m, m, 100));
   });
   rc::prop("is all that a map sees of the size", [] {
-    const auto plain = any_map(3), map = normalised(plain);
+    const auto plain = any_map(), map = normalised(plain);
     const double measure = any_measure(), theta = any_rotation();
     const auto d = any_shift();
     const auto r = Shear(map)(measure, d, theta);
-    const double by_d = shear_factor(measure, map.reference, map.force.exponent);
-    const double by_t = shear_factor(measure, map.reference, map.moment.exponent);
+    const double by_d = std::pow(measure / map.reference, map.force.exponent);
+    const double by_t = std::pow(measure / map.reference, map.moment.exponent);
     const auto alone = Shear(plain)(1.0, by_d * d, by_t * theta);
-    RC_ASSERT(alone.tangential_force_n.x == r.tangential_force_n.x);
-    RC_ASSERT(alone.tangential_force_n.y == r.tangential_force_n.y);
-    RC_ASSERT(alone.moment_n_mm == r.moment_n_mm);
+    const auto &fa = alone.tangential_force_n, &fr = r.tangential_force_n;
+    RC_ASSERT(near(fa.x, fr.x, fr.x, 100) && near(fa.y, fr.y, fr.y, 100));
+    RC_ASSERT(near(alone.moment_n_mm, r.moment_n_mm, r.moment_n_mm, 100));
     RC_ASSERT(alone.status == ForceStatus::implausible || r.status == ForceStatus::below_range ||
               alone.status == r.status);
   });
-}
-
-TEST_CASE("shear: moments about other points", "[shear][law]") {
-  // a force along y at x = 3 mm rotates from x toward y
-  CHECK(moment_about_origin(0.0, {0.0, 2.0}, {3.0, 0.0}) == 6);
-  CHECK(moment_about_origin(0.0, {2.0, 0.0}, {0.0, 3.0}) == -6);
-  CHECK(moment_about_origin(5.0, {2.0, 1.0}, {4.0, 2.0}) == 5);  // in line with the origin
-  rc::prop(
-      "the force adds its cross product, and it does not matter over which points one goes", [] {
-        const auto any = [] { return Vector{test::uniform(-20, 20), test::uniform(-20, 20)}; };
-        const auto force = any(), center = any(), stop = any();
-        const double moment = test::uniform(-100, 100);
-        const Eigen::Vector3d f(force.x, force.y, test::uniform(-9, 0)), c(center.x, center.y, 0);
-        const double at_origin = moment_about_origin(moment, force, center);
-        RC_ASSERT(near(at_origin, moment + c.cross(f).z(), 1000, 2));
-        const double there =
-            moment_about_origin(moment, force, Vector{center.x - stop.x, center.y - stop.y});
-        RC_ASSERT(near(moment_about_origin(there, force, stop), at_origin, 1000, 8));
-      });
 }
 
 TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is worth",
@@ -1285,22 +1058,20 @@ TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is wort
     return k < 11 ? odd[k] : static_cast<S>(test::uniform(-10, 10));
   };
   rc::prop("finite where there is one, 0 without contact, else NaN", [=] {
-    ShearMap<S> map = any_map<S>(3);
+    ShearMap<S> map = any_map<S>();
     map.reference = S(100), map.force.exponent = S(0.65), map.moment.exponent = S(1.7);
     const Shear shear(map);
     const S measure = any_number(), theta = any_number();
     const Point2<S> d{any_number(), any_number()};
     const auto r = shear(measure, d, theta);
     const auto& f = r.tangential_force_n;
-    const bool known = is_finite(measure);
-    RC_ASSERT(r.has_force() == (known && is_finite(d)));
-    RC_ASSERT(r.has_moment() == (known && is_finite(theta)));
+    const bool known = is_finite(measure), gone = known && !(measure > 0);
+    RC_ASSERT(r.has_force() == (gone || (known && is_finite(d))));
+    RC_ASSERT(r.has_moment() == (gone || (known && is_finite(theta))));
     RC_ASSERT((r.status == ForceStatus::not_finite) == !(r.has_force() && r.has_moment()));
     RC_ASSERT((r.has_force() || (f.x != f.x && f.y != f.y)));
     RC_ASSERT((r.has_moment() || r.moment_n_mm != r.moment_n_mm));
-    const bool gone = known && !(measure > 0);
-    RC_ASSERT((r.status == ForceStatus::no_contact) == (gone && r.has_force() && r.has_moment()));
-    RC_ASSERT(!gone || !r.has_force() || (f.x == 0 && f.y == 0));
-    RC_ASSERT(!gone || !r.has_moment() || r.moment_n_mm == 0);
+    RC_ASSERT((r.status == ForceStatus::no_contact) == gone);
+    RC_ASSERT(!gone || (f.x == 0 && f.y == 0 && r.moment_n_mm == 0));
   });
 }

@@ -41,33 +41,23 @@ std::vector<ForceSample<double>> any_samples(Input& in) {
 void try_forces(Input& in) {
   const auto given = any_samples(in);
   const std::span<const ForceSample<double>> samples(given);
-  const FitOptions options{.robust = in.flag()};
-  CurveOptions curve;
-  curve.through_zero = in.flag();
-  curve.degree = static_cast<int>(in.whole(1, 3));
-  switch (in.whole(0, 3)) {
+  FitOptions options;
+  options.through_zero = in.flag();
+  options.degree = static_cast<int>(in.whole(1, 3));
+  const auto require_law = [](const ShearFit<>& fit) {
+    require(!fit.ok() || (is_finite(fit.law.slope) && is_finite(fit.law.exponent)),
+            "a law is finite");
+  };
+  switch (in.whole(0, 2)) {
     case 0: {
-      const auto fit = fit_normal_force(samples, curve, options);
+      const auto fit = fit_normal_force(samples, options);
       require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a curve is finite");
       return;
     }
-    case 1: {
-      const auto fit = fit_tangential_force(samples, 100.0, {}, options);
-      require(!fit.ok() || fit.residuals.size() <= 2 * given.size(),
-              "there is at most one residual for each component");
-      return;
-    }
-    case 2: {
-      const auto fit = fit_moment(samples, 100.0, 1.7, options);
-      require(!fit.ok() || fit.residuals.size() <= given.size(),
-              "there is at most one residual for each sample");
-      return;
-    }
-    default: {
-      const auto fit = fit_linear_shear(samples, 100, 0.65, options);
-      require(!fit.ok() || (is_finite(fit.map.x_by_x) && is_finite(fit.map.offset_n)),
-              "a map is finite");
-    }
+    case 1:
+      return require_law(fit_tangential_force(samples, 100.0));
+    default:
+      return require_law(fit_moment(samples, 100.0, 1.7));
   }
 }
 

@@ -227,7 +227,7 @@ TEST_CASE("a look-up's covariance is that which the forces' errors carry into it
     samples[k].measure = S(m);
     samples[k].normal_force_n = S::parameter(plain[k].normal_force_n, k);
   }
-  const CurveOptions options{.through_zero = false};
+  const FitOptions options{.through_zero = false};
   const auto dual = fit_normal_force(std::span<const ForceSample<S>>(samples), options);
   const auto fit = fit_normal_force(std::span<const ForceSample<double>>(plain), options);
   for (std::size_t i = 0; i <= 2; ++i) {

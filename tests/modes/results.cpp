@@ -147,7 +147,7 @@ void tell_dots(Results& tell) {
 void tell_forces(Results& tell) {
   static const NormalForce<> force(ForceCurve<>{{0, 0.02, 0.0001}, 10, 400});
   tell("normal force N", force(123.4).force_n);
-  static const Shear<> shear({100, {{2, 0, 0, 0}, 0.65}, {{30, 0, 0, 0}, 1.7}});
+  static const Shear<> shear({100, {2, 0.65}, {30, 1.7}});
   const auto sheared = shear(80, {0.4, -0.3}, 0.1);
   tell("shear x N", sheared.tangential_force_n.x);
   tell("shear moment N mm", sheared.moment_n_mm);

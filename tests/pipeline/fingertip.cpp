@@ -348,20 +348,6 @@ TEST_CASE("what the options lack has no answer, and the rest is the same", "[cha
   tip.reset();
 }
 
-TEST_CASE("an unknown shift counts as none", "[chain]") {
-  auto options = frames().options();
-  options.free_dots_mm = {};
-  auto curve = options.force_of_depth->curve();
-  curve.per_mm_sq = 0.02;
-  curve.per_rad_sq = 0.5;
-  options.force_of_depth.emplace(curve);
-  Fingertip tip(options);
-  const FingertipResult touch = touch_of(tip, frames()[0].view());
-  const auto unmoved = (*options.force_of_depth)(touch.contact.depth_mm, {0, 0}, 0.0);
-  REQUIRE(unmoved.force_n > 0);
-  CHECK(touch.by_depth.force_n == unmoved.force_n);
-}
-
 TEST_CASE("a free apex that is not that of the reference is refused", "[chain]") {
   auto options = frames().options();
   const double apex_mm = options.contact.free_apex_mm;

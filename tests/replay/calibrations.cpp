@@ -139,7 +139,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.force->by_depth->from == 0.1 / 3);
   CHECK(sensor.force->shear->by == replay::ContactMeasure::depth);
   CHECK(sensor.force->shear->map.force.exponent == 1.0 / 3);
-  CHECK(sensor.force->shear->map.moment.coefficients[0] == 1000.0 / 3);
+  CHECK(sensor.force->shear->map.moment.slope == 1000.0 / 3);
   CHECK(sensor.force->shear->map.moment.to == 0.1 / 3);
 
   const fs::path foam = scratch("foam_round_trip");

@@ -35,9 +35,9 @@ fingerpad::ShearMap<S> straight_map(const S& reference,
                                     const S& moment_n_mm_per_rad) {
   fingerpad::ShearMap<S> map;
   map.reference = reference;
-  map.force.coefficients[0] = force_n_per_mm;
+  map.force.slope = force_n_per_mm;
   map.force.exponent = displacement_exponent;
-  map.moment.coefficients[0] = moment_n_mm_per_rad;
+  map.moment.slope = moment_n_mm_per_rad;
   map.moment.exponent = rotation_exponent;
   return map;
 }

@@ -117,7 +117,7 @@ inline auto tangential_force_of(ContactMeasure measure, ContactDotsOf dots, bool
     const auto fit = fit_tangential_force(std::span<const LoadSample>(samples), reference,
                                           divides ? std::optional<double>() : 0.0);
     ShearMap<> map{reference, fit.law, {}};
-    map.moment.coefficients[0] = 100;
+    map.moment.slope = 100;
     return [shear = Shear(map)](const LoadSample& s) {
       const auto f = shear(s.measure, s.displacement_mm, 0).tangential_force_n;
       return std::hypot(f.x - s.tangential_force_n.x, f.y - s.tangential_force_n.y);

@@ -95,8 +95,8 @@ class PressedFrames {
     const auto [more_mm, more_n] = of_depth(8.4);
     const double slope = (more_n - less_n) / (more_mm - less_mm);
     f.force_of_depth.emplace(fingerpad::ForceCurve<>{
-        {less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5, 0, 0, residual_n});
-    f.shear.emplace(fingerpad::ShearMap<>{100, {{1, 0, 0, 0}, 0.65, 10}, {{1, 0, 0, 0}, 1.7, 1}});
+        {less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5, residual_n});
+    f.shear.emplace(fingerpad::ShearMap<>{100, {1, 0.65, 10}, {1, 1.7, 1}});
     return f;
   }
 

@@ -100,7 +100,7 @@ inline ShearErrors tangential(const std::vector<std::string>& from,
   const Samples seen = samples_of(from, measure, dots);
   const auto fit = fit_tangential_force(span_of(seen), reference_of(measure), exponent);
   ShearMap<> map{reference_of(measure), fit.law, {}};
-  map.moment.coefficients[0] = 0;
+  map.moment.slope = 0;
   const Shear shear(map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
@@ -120,7 +120,7 @@ inline ShearErrors moment(const std::vector<std::string>& from,
   const Samples seen = samples_of(from, measure, dots);
   const auto fit = fit_moment(span_of(seen), reference_of(measure), exponent);
   ShearMap<> map{reference_of(measure), {}, fit.law};
-  map.force.coefficients[0] = 0;
+  map.force.slope = 0;
   const Shear shear(map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {

@@ -70,8 +70,7 @@ void check_gauge(const std::filesystem::path& folder, Recording& recording, Find
     return;
   }
   try {
-    const auto fit = fingerpad::fit_tangential_force(std::span<const Sample>(drags), 1, 0.0,
-                                                     {.min_explained = 0});
+    const auto fit = fingerpad::fit_tangential_force(std::span<const Sample>(drags), 1, 0.0);
     constexpr double degrees = 180 / CV_PI;
     const double angle = degrees * fit.gauge_angle_rad, sd = degrees * fit.gauge_angle_sd_rad;
     constexpr double most = 6;  // the response of a pad is not quite linear

@@ -139,7 +139,10 @@ class JsonSection {
     const auto is_number = [](const nlohmann::json& entry) { return entry.is_number(); };
     if (!found.is_array() || found.empty() || found.size() > Most ||
         !std::all_of(found.begin(), found.end(), is_number)) {
-      refuse_type(key, found, ("1 to " + std::to_string(Most) + " numbers [...]").c_str());
+      refuse_type(key, found,
+                  (Most == 1 ? std::string("one number [x]")
+                             : "1 to " + std::to_string(Most) + " numbers [...]")
+                      .c_str());
     }
     std::array<double, Most> numbers{};
     std::copy(found.begin(), found.end(), numbers.begin());

@@ -206,9 +206,7 @@ fingerpad::ForceCurve<> read_normal_force(const Section& force,
             {"to_" + unit, "the largest contact of the calibration"},
             {"residual_n",
              "standard deviation of the residual, N; by_area and by_depth are weighted by it"},
-            {"covariance", "covariance of the coefficients, one row for each"},
-            {"per_mm_sq", "relative change of the force per squared mm of shift"},
-            {"per_rad_sq", "relative change of the force per squared rad of rotation"}});
+            {"covariance", "covariance of the coefficients, one row for each"}});
   fingerpad::ForceCurve<> curve;
   curve.coefficients = section.numbers<fingerpad::ForceCurve<>::size>("coefficients");
   curve.from = section.number("from_" + unit);
@@ -221,8 +219,6 @@ fingerpad::ForceCurve<> read_normal_force(const Section& force,
       std::copy(rows[k].begin(), rows[k].end(), curve.covariance[k].begin());
     }
   }
-  curve.per_mm_sq = section.has("per_mm_sq") ? section.number("per_mm_sq") : 0;
-  curve.per_rad_sq = section.has("per_rad_sq") ? section.number("per_rad_sq") : 0;
   section.check([&] { fingerpad::require(curve); });
   return curve;
 }
@@ -233,20 +229,19 @@ ShearLookUp read_shear(const Section& force) {
                 {"reference", "measure at which they are not scaled, mm^2 or mm"},
                 {"displacement_exponent", "exponent of measure / reference for the displacement"},
                 {"rotation_exponent", "exponent of measure / reference for the rotation"},
-                {"force_n_per_mm", "odd polynomial in the displacement, linear coefficient first"},
-                {"moment_n_mm_per_rad", "odd polynomial in the rotation, linear coefficient first"},
+                {"force_n_per_mm", "[slope of the force over the scaled displacement]"},
+                {"moment_n_mm_per_rad", "[slope of the moment over the scaled rotation]"},
                 {"to_mm", "the largest scaled displacement of the calibration, mm"},
                 {"to_rad", "the largest scaled rotation of the calibration, rad"}});
-  constexpr std::size_t most = 4;
   ShearLookUp look_up;
   look_up.by = section.one_of("by", {"area", "depth"}) == "area" ? ContactMeasure::area
                                                                  : ContactMeasure::depth;
   look_up.map.reference = section.number("reference");
   look_up.map.force.exponent = section.number("displacement_exponent");
   look_up.map.moment.exponent = section.number("rotation_exponent");
-  look_up.map.force.coefficients = section.numbers<most>("force_n_per_mm");
+  look_up.map.force.slope = section.numbers<1>("force_n_per_mm")[0];
   look_up.map.force.to = section.number("to_mm");
-  look_up.map.moment.coefficients = section.numbers<most>("moment_n_mm_per_rad");
+  look_up.map.moment.slope = section.numbers<1>("moment_n_mm_per_rad")[0];
   look_up.map.moment.to = section.number("to_rad");
   section.check([&] { fingerpad::require(look_up.map); });
   return look_up;

@@ -1,29 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Options and causes of all calibrations. Samples that do not determine the parameters are refused
+// Causes of all calibrations. Samples that do not determine the parameters are refused
 // (parameter_error). Samples that determine them but look wrong give parameters and the likely
 // cause.
-#include <string>
-
-#include "fingerpad/core/check.hpp"
-#include "fingerpad/core/scalar.hpp"
-
 namespace fingerpad {
 inline namespace v0 {
-
-/// Options of the fits of forces.
-struct FitOptions {
-  bool robust = false;         ///< Huber's loss: outliers weigh less
-  double min_explained = 0.9;  ///< refuses samples as contradictory if the model explains a smaller
-                               ///< share of the variance about the mean; in [0, 1)
-};
-
-/// Says which option has no meaning; "" if all have one.
-inline std::string check(const FitOptions& o) {
-  return check("FitOptions",
-               {{"min_explained", o.min_explained, {.min = 0, .max = 1, .below_max = true}}});
-}
 
 /// A fit that is not ok() says in its field `cause` what is likely wrong; nullptr if it is ok.
 /// Causes of several fits:

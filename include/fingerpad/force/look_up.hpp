@@ -22,6 +22,7 @@
 // and tangential force is almost linear". Both are what the object exerts on the pad: a pad that is
 // dragged along x is pushed along x. The moment is about the normal through the center of the
 // contact. motion/contact_shift.hpp measures d and theta.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -40,12 +41,10 @@ inline namespace v0 {
 enum class ForceStatus : std::uint8_t {
   no_contact,    ///< the measure is 0 or negative: no force, whatever the displacement
   measured,      ///< within the calibrated range
-  below_range,   ///< the contact is smaller than any in the calibration, and the force fades to 0
-                 ///< with it; Shear: smaller than a hundredth of the reference. If this is always
-                 ///< so, the measure may be in another unit
-  beyond_range,  ///< a larger contact or displacement than in the calibration: the curve continues
-                 ///< along its tangent
-  held_at_zero,  ///< the compensation gives a negative force, which is set to 0
+  below_range,   ///< a smaller contact than any in the calibration, for Shear than a hundredth of
+                 ///< the reference: the force fades to 0. If always, a measure in another unit?
+  beyond_range,  ///< a larger contact or displacement than in the calibration: along the tangent
+  held_at_zero,  ///< the curve gives a negative force, which is set to 0
   disagreeing,   ///< the forces by area and by depth differ by more than their errors allow: the
                  ///< contact is unlike those of the calibration, or a measure is in another unit
   implausible,   ///< a displacement above 100 mm, a rotation by more than half a turn, or a measure
@@ -65,39 +64,36 @@ constexpr const char* name_of(ForceStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
-/// F = (c_0 + c_1 m + c_2 m^2 + ...) (1 + a |d|^2 + b theta^2) in N for a measure m of the contact,
-/// a displacement d and a rotation theta. m is its area in mm^2, depth in mm or, on elastic pads,
-/// radius in mm. The paper's own compensation is published/look_up.hpp.
+/// F = c_0 + c_1 m + c_2 m^2 + c_3 m^3 in N for a measure m of the contact: its area in mm^2, depth
+/// in mm or, on elastic pads, radius in mm. The paper's compensation is published/look_up.hpp.
 template <scalar S = double>
 struct ForceCurve {
-  static constexpr std::size_t size = 6;
+  static constexpr std::size_t size = 4;
   using Coefficients = std::array<S, size>;
 
-  Coefficients coefficients = detail::zeros<S, size>();  ///< c_0 first, finite; those not given: 0
+  Coefficients coefficients = detail::zeros<S, size>();  ///< c_0 first, finite
   S from = not_a_number<S>();           ///< the smallest measure identified, finite, >= 0
   S to = not_a_number<S>();             ///< the largest, finite, > from
-  S per_mm_sq = S(0);                   ///< a, 1/mm^2; 0: the displacement is not read
-  S per_rad_sq = S(0);                  ///< b, 1/rad^2; 0: the rotation is not read
   S residual_sd_n = not_a_number<S>();  ///< standard deviation of a sample about the curve, N,
                                         ///< >= 0; NaN: forces get no variance
-  S measure_sd = S(0);                  ///< of noise in the measure beyond that of the samples
   std::array<Coefficients, size> covariance = detail::zero_matrix<S, size>();  ///< of coefficients
 
   /// The polynomial.
   S force_n(const S& measure) const {
-    S sum = coefficients[size - 1];
-    for (std::size_t k = size - 1; k-- > 0;) {
-      sum = sum * measure + coefficients[k];
-    }
-    return sum;
+    const auto& [c_0, c_1, c_2, c_3] = coefficients;
+    return ((c_3 * measure + c_2) * measure + c_1) * measure + c_0;
   }
   /// Its derivative by the measure.
   S slope(const S& measure) const {
-    S sum = S(0);
-    for (std::size_t k = size - 1; k >= 1; --k) {
-      sum = sum * measure + S(static_cast<int>(k)) * coefficients[k];
-    }
-    return sum;
+    const auto& [c_0, c_1, c_2, c_3] = coefficients;
+    return (S(3) * c_3 * measure + S(2) * c_2) * measure + c_1;
+  }
+  /// The smallest derivative between `low` and `to`.
+  S lowest_slope(const S& low) const {
+    const S a = slope(low), b = slope(to), turn = -coefficients[2] / (S(3) * coefficients[3]);
+    const S ends = value(a) < value(b) ? a : b;
+    const bool within = value(low) < value(turn) && value(turn) < value(to);
+    return within && value(slope(turn)) < value(ends) ? slope(turn) : ends;
   }
 };
 
@@ -105,41 +101,23 @@ struct ForceCurve {
 template <scalar S>
 std::string check(const ForceCurve<S>& c) {
   const char* const owner = "ForceCurve";
-  const double from = static_cast<double>(value(c.from));
   const bool has_errors = value(c.residual_sd_n) == value(c.residual_sd_n);
+  const double from = static_cast<double>(value(c.from));
   std::string refusal =
       check(owner, {{"from", c.from, not_negative},
                     {"to", c.to, {.min = from, .above_min = true}},
-                    {"per_mm_sq", c.per_mm_sq, finite_number},
-                    {"per_rad_sq", c.per_rad_sq, finite_number},
-                    {"residual_sd_n", has_errors ? c.residual_sd_n : S(0), not_negative},
-                    {"measure_sd", c.measure_sd, not_negative}});
+                    {"residual_sd_n", has_errors ? c.residual_sd_n : S(0), not_negative}});
   for (std::size_t k = 0; k < c.size && refusal.empty(); ++k) {
     refusal = check(owner, {{"coefficients", c.coefficients[k], finite_number},
                             {"variance of a coefficient", c.covariance[k][k], not_negative}});
   }
-  for (std::size_t k = 0; k < c.size; ++k) {
-    for (std::size_t j = 0; j < c.size && refusal.empty(); ++j) {
-      const S largest_sq = S(1.000001) * c.covariance[k][k] * c.covariance[j][j];
-      if (!(value(square(c.covariance[k][j])) <= value(largest_sq))) {
-        refusal = "ForceCurve: covariance has a correlation above 1";
-      }
-    }
-  }
   const S end = c.force_n(c.to);
   const S rounding = S(64 * epsilon<S>()) * (value(end) < 0 ? -end : end) / c.to;  // of a slope
-  if (refusal.empty()) {  // a force at 0 would be a step
-    refusal = check(
-        owner, {{"force at to", end, finite_number},
-                {"c_0 of a curve from 0 on", from > 0 ? S(0) : c.coefficients[0], within(0, 0)}});
-  }
-  for (int k = 0; k <= 16 && refusal.empty(); ++k) {
-    const S slope = c.slope(c.from + S(k) / S(16) * (c.to - c.from));
-    if (!(value(slope + rounding) >= 0)) {
-      refusal = check(owner, {{"slope within the range", slope, not_negative}});
-    }
-  }
-  return refusal;
+  const S first = from > 0 ? S(0) : c.coefficients[0], slope = c.lowest_slope(c.from) + rounding;
+  return !refusal.empty() ? refusal
+                          : check(owner, {{"force at to", end, finite_number},
+                                          {"c_0 of a curve from 0 on", first, within(0, 0)},
+                                          {"slope within the range", slope, not_negative}});
 }
 
 /// The normal force of one frame.
@@ -157,147 +135,73 @@ struct [[nodiscard]] ForceResult {
   bool has_force() const { return is_finite(force_n); }
 };
 
-namespace detail {
-
-/// 3 x^2 - 2 x^3 from 0 at x = 0 to 1 at x = 1, level at both, and 1 beyond; and its slope.
-template <scalar S>
-S smooth_step(const S& share) {
-  const S x = value(share) < 1 ? share : S(1);
-  return x * x * (S(3) - S(2) * x);
-}
-template <scalar S>
-S smooth_step_slope(const S& x) {
-  return value(x) < 1 ? S(6) * x * (S(1) - x) : S(0);
-}
-
-/// Finite, but impossible for the contact of a fingertip.
-template <scalar S>
-bool is_wild(const Point2<S>& displacement_mm) {
-  return is_finite(displacement_mm) && value(squared_norm(displacement_mm)) > 10000;
-}
-template <scalar S>
-bool is_wild_rotation(const S& rotation_rad) {
-  return is_finite(rotation_rad) && value(square(rotation_rad)) > 10;
-}
-constexpr ForceStatus worse(ForceStatus a, ForceStatus b) {
-  return a < b ? b : a;
-}
-
-}  // namespace detail
-
-/// The normal force from one measure of the contact. Without contact it is 0, whatever the
-/// displacement. Below the calibrated range the curve is faded in smoothly, so that the force rises
-/// without a step; beyond it continues along its tangent, because a polynomial may turn anywhere.
-/// A call is const, O(1), and allocates nothing.
+/// The normal force from one measure of the contact. Below the calibrated range the curve is faded
+/// in smoothly, so that the force rises without a step; beyond it continues along its tangent,
+/// because a polynomial may turn anywhere. A call is const, O(1), and allocates nothing.
 template <scalar S = double>
 class NormalForce {
  public:
   /// Refuses bad parameters (parameter_error).
-  explicit NormalForce(const ForceCurve<S>& curve) : curve_(curve) {
-    require(curve);
-    end_slope_ = curve.slope(curve.to);
-    one_over_from_ = value(curve.from) > value(S(1e-30)) ? S(1) / curve.from : S(1e30);
-    for (std::size_t k = 0; k < curve.size; ++k) {
-      const bool used = value(curve.coefficients[k]) != 0 || value(curve.covariance[k][k]) != 0;
-      terms_ = used ? k + 1 : terms_;
-    }
-  }
+  explicit NormalForce(const ForceCurve<S>& curve) : curve_(curve) { require(curve); }
 
-  /// The force of one frame. Displacement and rotation are those of the contact.
-  /// `measure_variance` is that of this measure in addition to that of the calibration.
-  ForceResult<S> operator()(const S& measure,
-                            const Point2<S>& displacement_mm = {S(0), S(0)},
-                            const S& rotation_rad = S(0),
-                            const S& measure_variance = S(0)) const {
-    const Place at = place_of(measure);
-    const S gain = gain_of(displacement_mm, rotation_rad);
-    const S force = gain * at.faded * at.plain_n;
+  /// The force of one frame. `measure_variance` is that of this measure in addition to that of the
+  /// calibration.
+  ForceResult<S> operator()(const S& measure, const S& measure_variance = S(0)) const {
     ForceResult<S> result;
-    if (!is_finite(measure) || !is_finite(force)) {
+    if (!is_finite(measure)) {
       return result;
     }
-    const bool wild = !is_plausible(measure) || !is_plausible(force) ||
-                      (value(curve_.per_mm_sq) != 0 && detail::is_wild(displacement_mm)) ||
-                      (value(curve_.per_rad_sq) != 0 && detail::is_wild_rotation(rotation_rad));
+    const S above = value(measure) > 0 ? measure : S(0);
+    const bool past = value(above) > value(curve_.to);
+    const S within = past ? curve_.to : above, beyond = past ? above - curve_.to : S(0);
+    const bool fades = value(within) < value(curve_.from);
+    const S x = fades ? within / curve_.from : S(1), fade = x * x * (S(3) - S(2) * x);
+    const S slope = curve_.slope(within), plain_n = curve_.force_n(within) + slope * beyond;
+    const S force = fade * plain_n;
+    if (!is_finite(force)) {
+      return result;
+    }
+    const bool wild = !is_plausible(measure) || !is_plausible(force);
     result.force_n = value(force) > 0 ? force : S(0);
-    result.status = value(measure) <= 0                   ? ForceStatus::no_contact
-                    : wild                                ? ForceStatus::implausible
-                    : value(force) < 0                    ? ForceStatus::held_at_zero
-                    : value(measure) < value(curve_.from) ? ForceStatus::below_range
-                    : value(measure) > value(curve_.to)   ? ForceStatus::beyond_range
-                                                          : ForceStatus::measured;
+    result.status = value(measure) <= 0 ? ForceStatus::no_contact
+                    : wild              ? ForceStatus::implausible
+                    : value(force) < 0  ? ForceStatus::held_at_zero
+                    : fades             ? ForceStatus::below_range
+                    : past              ? ForceStatus::beyond_range
+                                        : ForceStatus::measured;
     if (value(curve_.residual_sd_n) >= 0) {
-      result.variance_n2 = variance_n2(measure, at, gain, measure_variance);
+      // the coefficients, what the calibration could not explain, noise of the measure, and the
+      // distance of the tangent from the curve, because nothing shows which of them is right
+      typename ForceCurve<S>::Coefficients by_coefficient = {fade};
+      S power = fade, of_curve = S(0);
+      for (std::size_t k = 1; k < curve_.size; ++k) {
+        by_coefficient[k] = power * (within + S(static_cast<int>(k)) * beyond);
+        power = power * within;
+      }
+      for (std::size_t i = 0; i < curve_.size; ++i) {
+        for (std::size_t j = 0; j < curve_.size; ++j) {
+          of_curve = of_curve + by_coefficient[i] * curve_.covariance[i][j] * by_coefficient[j];
+        }
+      }
+      const S fade_slope = fades ? S(6) * x * (S(1) - x) / curve_.from : S(0);
+      const S bend = past ? curve_.force_n(measure) - plain_n : S(0);
+      result.variance_n2 = (value(of_curve) > 0 ? of_curve : S(0)) + square(curve_.residual_sd_n) +
+                           square(fade * slope + fade_slope * plain_n) * measure_variance +
+                           square(bend);
     }
     return result;
   }
 
-  const ForceCurve<S>& curve() const { return curve_; }
-
  private:
-  /// A measure limited to [0, to], what it exceeds `to` by, and the force there.
-  struct Place {
-    S within, beyond, faded, plain_n;
-  };
-
-  /// Treats NaN like no contact: the measure is checked.
-  Place place_of(const S& measure) const {
-    const S above = value(measure) > 0 ? measure : S(0);
-    const bool past = value(above) > value(curve_.to);
-    const S within = past ? curve_.to : above, beyond = past ? above - curve_.to : S(0);
-    return {within, beyond, detail::smooth_step(within * one_over_from_),
-            curve_.force_n(within) + end_slope_ * beyond};
-  }
-
-  S gain_of(const Point2<S>& displacement_mm, const S& rotation_rad) const {
-    S gain(1);
-    if (value(curve_.per_mm_sq) != 0) {
-      gain = gain + curve_.per_mm_sq * squared_norm(displacement_mm);
-    }
-    if (value(curve_.per_rad_sq) != 0) {
-      gain = gain + curve_.per_rad_sq * square(rotation_rad);
-    }
-    return gain;
-  }
-
-  /// Four parts: the coefficients, what the calibration could not explain, noise of the measure,
-  /// and the distance of the tangent from the curve, because nothing shows which of them is right.
-  [[gnu::pure]] S variance_n2(const S& measure,
-                              const Place& at,
-                              const S& gain,
-                              const S& measure_variance) const {
-    const S fade_slope = detail::smooth_step_slope(at.within * one_over_from_) * one_over_from_;
-    const S slope = gain * (curve_.slope(at.within) * at.faded + at.plain_n * fade_slope);
-    const S bend = value(at.beyond) > 0 ? gain * (curve_.force_n(measure) - at.plain_n) : S(0);
-    typename ForceCurve<S>::Coefficients by_coefficient = {gain * at.faded};
-    S power = gain * at.faded;
-    for (std::size_t k = 1; k < terms_; ++k) {
-      by_coefficient[k] = power * (at.within + S(static_cast<int>(k)) * at.beyond);
-      power = power * at.within;
-    }
-    S sum(0);
-    for (std::size_t i = 0; i < terms_; ++i) {
-      for (std::size_t j = 0; j < terms_; ++j) {
-        sum = sum + by_coefficient[i] * curve_.covariance[i][j] * by_coefficient[j];
-      }
-    }
-    return (value(sum) > 0 ? sum : S(0)) + square(curve_.residual_sd_n) +
-           square(slope) * (square(curve_.measure_sd) + measure_variance) + square(bend);
-  }
-
   ForceCurve<S> curve_;
-  S end_slope_, one_over_from_;
-  std::size_t terms_ = 1;  // coefficients with a value or a variance
 };
 
 /// Combines the forces by area and by depth, weighted by their variances; their errors are assumed
 /// to be independent. A force that is NaN or has no variance does not take part, but an implausible
-/// one makes the result implausible. Two forces that differ by more than `max_disagreement`
-/// standard deviations are disagreeing.
+/// one makes the result implausible. Two forces that differ by more than three standard deviations
+/// are disagreeing.
 template <scalar S>
-ForceResult<S> fused(const ForceResult<S>& a,
-                     const ForceResult<S>& b,
-                     double max_disagreement = 3) {
+ForceResult<S> fused(const ForceResult<S>& a, const ForceResult<S>& b) {
   using std::sqrt;
   const bool with_a = a.has_force() && is_finite(a.variance_n2);
   const bool with_b = b.has_force() && is_finite(b.variance_n2);
@@ -308,60 +212,23 @@ ForceResult<S> fused(const ForceResult<S>& a,
     return one;
   }
   const S sum = a.variance_n2 + b.variance_n2, difference = a.force_n - b.force_n;
-  const bool exact = !(value(sum) > 0);
-  const S share_of_a = exact ? S(1) / S(2) : b.variance_n2 / sum;
-  const S disagreement = value(difference) == 0 ? S(0)
-                         : exact                ? not_a_number<S>()
-                                                : difference / sqrt(sum);
-  const bool agree = value(square(disagreement)) <= value(square(S(max_disagreement)));
-  const ForceStatus worst = detail::worse(a.status, b.status);
-  return {agree ? worst : detail::worse(worst, ForceStatus::disagreeing),
-          b.force_n + share_of_a * difference, share_of_a * a.variance_n2, disagreement};
+  const S share_of_a = value(sum) > 0 ? b.variance_n2 / sum : S(1) / S(2);
+  const S disagreement = value(difference) == 0 ? S(0) : difference / sqrt(sum);
+  const bool agree = value(square(disagreement)) <= 9;
+  const ForceStatus apart = agree ? ForceStatus::no_contact : ForceStatus::disagreeing;
+  return {(std::max)({a.status, b.status, apart}), b.force_n + share_of_a * difference,
+          share_of_a * a.variance_n2, disagreement};
 }
 
-/// (measure / reference)^exponent, eqs. 4 and 5. Without contact (measure not above 0) it is 0, so
-/// that displaced dots give no force.
-template <scalar S>
-S shear_factor(const S& measure, const S& reference, const S& exponent) {
-  using std::exp;
-  using std::log;
-  return value(measure) > 0 ? exp(exponent * log(measure / reference)) : S(0);
-}
-
-/// Moment about the sensor's origin: the moment about the contact's center at `center_mm`, plus
-/// that of the force acting there.
-template <scalar S>
-S moment_about_origin(const S& moment_n_mm, const Point2<S>& force_n, const Point2<S>& center_mm) {
-  return moment_n_mm + center_mm.x * force_n.y - center_mm.y * force_n.x;
-}
-
-/// c_1 x + c_2 x |x| + c_3 x |x|^2 + ... of a displacement or rotation x that is multiplied by
-/// (measure / reference)^exponent: odd, because the force reverses with the displacement.
+/// slope x of a displacement or rotation x that is multiplied by (measure / reference)^exponent.
 template <scalar S = double>
 struct ShearLaw {
-  std::array<S, 4> coefficients = {not_a_number<S>(), S(0), S(0), S(0)};  ///< c_1 first, finite,
-                                                                          ///< c_1 >= 0
-  S exponent = S(0);         ///< T or R, finite; > 0 in the paper. 0: the size does not matter
-  S to = not_a_number<S>();  ///< the largest |x| identified, > 0; beyond it the tangent continues.
-                             ///< NaN: not known, for a straight line only
-
-  bool straight() const {
-    return value(coefficients[1]) == 0 && value(coefficients[2]) == 0 &&
-           value(coefficients[3]) == 0;
-  }
-  /// The law divided by x, for |x| = length: the factor of a vector of this length.
-  S gain(const S& length) const {
-    const S within = value(length) > value(to) ? to : length;
-    S sum = coefficients[3], slope = S(4) * coefficients[3];
-    for (std::size_t k = 3; k-- > 0;) {
-      sum = sum * within + coefficients[k];
-      slope = slope * within + S(static_cast<int>(k) + 1) * coefficients[k];
-    }
-    return value(length) > value(to) ? (sum * to + slope * (length - to)) / length : sum;
-  }
+  S slope = not_a_number<S>();  ///< finite, >= 0
+  S exponent = S(0);            ///< T or R, finite; > 0 in the paper. 0: the size does not matter
+  S to = not_a_number<S>();     ///< the largest |x| identified, > 0; NaN: not known
 };
 
-/// Force and moment from displacement and rotation, F = K g(|d_nor|) d_nor + offset. With K = 1
+/// Force and moment from displacement and rotation, F = slope K d_nor + offset. With K = 1
 /// the force is along the displacement; other K are for sensors that are not round, or whose axes
 /// are not those of the image. Elastic pads, by the radius of the contact: the exponents are 1 and
 /// 3, because the tangential stiffness of a round contact is proportional to its radius, the
@@ -369,8 +236,8 @@ struct ShearLaw {
 template <scalar S = double>
 struct ShearMap {
   S reference = S(1);  ///< in the measure's unit, finite, > 0
-  ShearLaw<S> force;   ///< N/mm, N/mm^2, ...
-  ShearLaw<S> moment;  ///< N mm/rad, N mm/rad^2, ...
+  ShearLaw<S> force;   ///< N/mm
+  ShearLaw<S> moment;  ///< N mm/rad
   S x_by_x = S(1);     ///< K, finite
   S x_by_y = S(0);
   S y_by_x = S(0);
@@ -382,30 +249,23 @@ struct ShearMap {
 template <scalar S>
 std::string check(const ShearMap<S>& m) {
   const char* const owner = "ShearMap";
-  std::string refusal = check(owner, {{"reference", m.reference, positive},
-                                      {"x_by_x", m.x_by_x, finite_number},
-                                      {"x_by_y", m.x_by_y, finite_number},
-                                      {"y_by_x", m.y_by_x, finite_number},
-                                      {"y_by_y", m.y_by_y, finite_number},
-                                      {"offset_n.x", m.offset_n.x, finite_number},
-                                      {"offset_n.y", m.offset_n.y, finite_number}});
+  std::string refusal = check(owner, {{"reference", m.reference, positive}});
+  for (const S& k : {m.x_by_x, m.x_by_y, m.y_by_x, m.y_by_y, m.offset_n.x, m.offset_n.y}) {
+    refusal = refusal.empty() ? check(owner, {{"K or offset_n", k, finite_number}}) : refusal;
+  }
   for (const ShearLaw<S>* law : {&m.force, &m.moment}) {
     const char* const whose = law == &m.force ? "ShearMap: force" : "ShearMap: moment";
-    const bool unknown = !(value(law->to) == value(law->to)) && law->straight();
-    refusal = !refusal.empty() ? refusal
-                               : check(whose, {{"c_1", law->coefficients[0], not_negative},
-                                               {"c_2", law->coefficients[1], finite_number},
-                                               {"c_3", law->coefficients[2], finite_number},
-                                               {"c_4", law->coefficients[3], finite_number},
-                                               {"exponent", law->exponent, finite_number},
-                                               {"to", unknown ? S(1) : law->to, positive}});
+    const bool has_end = value(law->to) == value(law->to);
+    refusal = refusal.empty() ? check(whose, {{"slope", law->slope, not_negative},
+                                              {"exponent", law->exponent, finite_number},
+                                              {"to", has_end ? law->to : S(1), positive}})
+                              : refusal;
   }
-  const S force = m.force.coefficients[0], moment = m.moment.coefficients[0];
-  if (refusal.empty() && value(force) > 0 && value(moment) > 0) {
+  if (refusal.empty() && value(m.force.slope) > 0 && value(m.moment.slope) > 0) {
     using std::sqrt;
     refusal =
         check(owner, {{"size of the contact from moment over force, in mm for N/mm and N mm/rad,",
-                       sqrt(moment / force), fingerpad::within(0.5, 1000)}});
+                       sqrt(m.moment.slope / m.force.slope), fingerpad::within(0.5, 1000)}});
   }
   return refusal;
 }
@@ -431,7 +291,8 @@ class Shear {
   explicit Shear(const ShearMap<S>& map) : map_(map) { require(map); }
 
   /// Force and moment of one frame. The force is NaN if the measure or the displacement is not
-  /// finite, the moment if the measure or the rotation is not finite. Both are 0 without contact.
+  /// finite, the moment if the measure or the rotation is not finite. Both are 0 without contact,
+  /// whatever moves.
   ShearResult<S> operator()(const S& measure,
                             const Point2<S>& displacement_mm,
                             const S& rotation_rad) const {
@@ -441,50 +302,44 @@ class Shear {
     if (!is_finite(measure)) {
       return result;
     }
-    const bool contact = value(measure) > 0;
-    const S log_ratio = contact ? log(measure / map_.reference) : S(0);  // once for both powers
+    if (!(value(measure) > 0)) {
+      return {ForceStatus::no_contact, {S(0), S(0)}, S(0)};
+    }
+    const S log_ratio = log(measure / map_.reference);  // once for both powers
     const Point2<S> d = exp(map_.force.exponent * log_ratio) * displacement_mm;
-    const S distance = length_of(d);
-    const Point2<S> pull = map_.force.gain(distance) * d;
+    const Point2<S> pull = map_.force.slope * d;
     const Point2<S> force = {map_.x_by_x * pull.x + map_.x_by_y * pull.y + map_.offset_n.x,
                              map_.y_by_x * pull.x + map_.y_by_y * pull.y + map_.offset_n.y};
     const S theta = exp(map_.moment.exponent * log_ratio) * rotation_rad;
-    const S angle = value(theta) < 0 ? -theta : theta;
-    const S moment = map_.moment.gain(angle) * theta;
-    const bool has_force = is_finite(displacement_mm) && is_finite(force);
-    const bool has_moment = is_finite(rotation_rad) && is_finite(moment);
-    if (has_force) {
-      result.tangential_force_n = contact ? force : Point2<S>{S(0), S(0)};
+    const S moment = map_.moment.slope * theta;
+    if (is_finite(force)) {
+      result.tangential_force_n = force;
     }
-    if (has_moment) {
-      result.moment_n_mm = contact ? moment : S(0);
+    if (is_finite(moment)) {
+      result.moment_n_mm = moment;
     }
-    if (has_force && has_moment) {
-      result.status = detail::worse(
-          status_of(measure, map_.force, distance, detail::is_wild(displacement_mm)),
-          status_of(measure, map_.moment, angle, detail::is_wild_rotation(rotation_rad)));
+    if (is_finite(force) && is_finite(moment)) {
+      const S moved_sq = squared_norm(displacement_mm), turned_sq = square(rotation_rad);
+      result.status =
+          (std::max)(status_of(measure, map_.force, squared_norm(d), value(moved_sq) > 10000),
+                     status_of(measure, map_.moment, square(theta), value(turned_sq) > 10));
     }
     return result;
   }
 
-  const ShearMap<S>& map() const { return map_; }
-
  private:
-  /// Its derivative at 0 is taken as 0; nothing depends on it there.
-  static S length_of(const Point2<S>& v) {
-    using std::sqrt;
-    const S sum_sq = squared_norm(v);
-    return value(sum_sq) > 0 ? sqrt(sum_sq) : S(0);
-  }
-  /// A measure below a hundredth of the reference is below_range, because no calibration has such a
+  /// A measure below a hundredth of the reference is below_range: no calibration has such a
   /// contact.
-  ForceStatus status_of(const S& measure, const ShearLaw<S>& law, const S& size, bool wild) const {
+  ForceStatus status_of(const S& measure,
+                        const ShearLaw<S>& law,
+                        const S& size_sq,
+                        bool wild) const {
+    const bool far = value(size_sq) > value(S(1 + 1e-6) * square(law.to));
     const bool tiny = value(law.exponent) != 0 && value(S(100) * measure) < value(map_.reference);
-    return !(value(measure) > 0)            ? ForceStatus::no_contact
-           : wild || !is_plausible(measure) ? ForceStatus::implausible
-           : value(size) > value(law.to)    ? ForceStatus::beyond_range
-           : tiny                           ? ForceStatus::below_range
-                                            : ForceStatus::measured;
+    return wild || !is_plausible(measure) ? ForceStatus::implausible
+           : far                          ? ForceStatus::beyond_range
+           : tiny                         ? ForceStatus::below_range
+                                          : ForceStatus::measured;
   }
 
   ShearMap<S> map_;

@@ -107,8 +107,7 @@ struct FingertipDots {
   }
 };
 
-/// Forces from the curves, once area, depth and shift are known. An unknown shift counts as 0: the
-/// compensation for it is small compared with the force.
+/// Forces from the curves, once area, depth and shift are known.
 struct FingertipLookUp {
   std::optional<NormalForce<>> by_area, by_depth;
   std::optional<Shear<>> shear;
@@ -116,27 +115,22 @@ struct FingertipLookUp {
 
   void operator()(FingertipResult& touch) const {
     const bool pressed = touch.contact.in_contact();
-    const auto known = [](double x) { return is_finite(x) ? x : 0; };
-    const Point2<double>& moved = touch.shift.displacement;
-    const Point2<double> along = {known(moved.x), known(moved.y)};
-    const double rotation = known(touch.shift.rotation_rad);
     const auto area = pressed ? touch.flat_area : FlatAreaResult<double>{0, 0};
     const double depth_mm = pressed ? touch.contact.depth_mm : 0;
     if (by_area) {
-      touch.by_area = (*by_area)(area.area_mm2, along, rotation, area.variance_mm4);
+      touch.by_area = (*by_area)(area.area_mm2, area.variance_mm4);
     }
     if (by_depth) {
-      touch.by_depth = (*by_depth)(depth_mm, along, rotation);
+      touch.by_depth = (*by_depth)(depth_mm);
     }
     touch.normal = fused(touch.by_area, touch.by_depth);
     if (is_finite(touch.by_area.variance_n2)) {
       const ForceResult<double>& a = touch.by_area;
       touch.normal = {a.status, a.force_n, a.variance_n2, touch.normal.disagreement};
     }
-    if (shear) {  // without contact the shift is 0
-      touch.shear =
-          (*shear)(shear_by_depth ? depth_mm : area.area_mm2,
-                   pressed ? moved : Point2<double>{0, 0}, pressed ? touch.shift.rotation_rad : 0);
+    if (shear) {
+      touch.shear = (*shear)(shear_by_depth ? depth_mm : area.area_mm2, touch.shift.displacement,
+                             touch.shift.rotation_rad);
     }
   }
 };
