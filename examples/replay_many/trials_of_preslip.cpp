@@ -11,11 +11,7 @@ namespace replay_many {
 
 /// Eight lifts by a trembling hand, with three marked slips each.
 Trial preslip() {
-  struct Marked {
-    std::array<fingerpad::FingerSample<double>, 2> fingers;
-    bool slips;
-  };
-  using Lift = std::vector<Marked>;
+  using Lift = std::vector<fingerpad::MarkedSample<>>;
   const auto finger = [](double x_mm, fingerpad::Index waves, fingerpad::Index taxel) {
     fingerpad::FingerSample<double> sample;
     sample.status = waves > 0 ? fingerpad::TaxelStatus::vibrating : fingerpad::TaxelStatus::quiet;
@@ -36,20 +32,18 @@ Trial preslip() {
         const auto waves = slips ? static_cast<fingerpad::Index>(2 + chance.below(3)) : trembles;
         lift.push_back(
             {{finger(x, waves, static_cast<fingerpad::Index>(chance.below(9))), finger(20, 0, 0)},
-             slips});
+             slips,
+             k == 0});
       }
     }
     return lifts;
   };
   const auto fit = [](const std::vector<Lift>& lifts) {
-    fingerpad::PreslipCalibration<> calibration(2, {.history = 10});
+    Lift all;
     for (const Lift& lift : lifts) {
-      calibration.begin_recording();
-      for (const Marked& sample : lift) {
-        calibration.add(sample.fingers, sample.slips);
-      }
+      all.insert(all.end(), lift.begin(), lift.end());
     }
-    const auto found = calibration.fit();
+    const auto found = fingerpad::fit_preslip(all, {.history = 10});
     return Estimate{{static_cast<double>(found.options.min_waves),
                      found.options.centroid_tolerance_mm, found.recall()},
                     diagonal({none, none, none})};

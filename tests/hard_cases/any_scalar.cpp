@@ -154,7 +154,7 @@ struct FreePadByPitch {
 struct PreslipThresholds {
   template <class S>
   Results<S> operator()(const S& p) const {
-    PreslipCalibration<S> calibration(1, {.history = 10});
+    std::vector<MarkedSample<S>> samples;
     for (int t = 0; t < 200; ++t) {
       const bool onset = t % 40 >= 30;
       FingerSample<S> sample;
@@ -163,9 +163,9 @@ struct PreslipThresholds {
       sample.sum = S(100) * p;
       sample.add_vibration(0, onset ? 3 : 0);
       sample.frequency_hz = S(onset ? 40 : 0);
-      calibration.add(std::array{sample}, onset);
+      samples.push_back({{sample}, onset});
     }
-    const auto fit = calibration.fit();
+    const auto fit = fit_preslip<S>(samples, {.history = 10});
     return {S(static_cast<int>(fit.found)), S(static_cast<int>(fit.alarms)),
             S(fit.options.centroid_tolerance_mm)};
   }

@@ -217,11 +217,11 @@ struct Hand {
 };
 
 std::string said_of_preslip(const Hand& hand) {
-  PreslipCalibration<> calibration(2, {.history = 20});
+  std::vector<MarkedSample<>> samples;
   for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
-    calibration.add(hand.fingers[k], hand.marks[k]);
+    samples.push_back({{hand.fingers[k].begin(), hand.fingers[k].end()}, hand.marks[k]});
   }
-  const auto fit = calibration.fit();
+  const auto fit = fit_preslip(samples, {.history = 20});
   return !fit.ok() ? text_of(fit)
          : fit.recall() == 1 && fit.precision() == 1
              ? "right"

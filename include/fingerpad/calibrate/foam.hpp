@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <numbers>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -202,108 +203,85 @@ struct [[nodiscard]] PreslipFit {
   }
 };
 
-/// Collects samples in which a person, or a camera, has marked the onset of slip, then finds the
-/// thresholds of the rule.
+/// A sample of all fingers in which a person, or a camera, has marked the onset of slip. Mark the
+/// samples in which an alarm would be right: about a window of samples from the first that slips.
 template <scalar S = double>
-class PreslipCalibration {
- public:
-  /// Number of fingers, and rule and history of `options`. Refuses bad parameters
-  /// (parameter_error).
-  explicit PreslipCalibration(Index fingers, const PreslipOptions& options = {})
-      : fingers_(static_cast<std::size_t>(fingers)), rule_(fingers, options) {}
-
-  /// The next sample belongs to another recording and is not compared with earlier ones.
-  void begin_recording() { begins_ = true; }
-
-  /// Adds a sample of all fingers; false, and nothing added, for another number of fingers.
-  /// `is_onset` marks the onset of slip. Mark the samples in which an alarm would be right: about a
-  /// window of samples from the first that slips.
-  bool add(std::span<const FingerSample<S>> fingers, bool is_onset) {
-    if (fingers.size() != fingers_) {
-      return false;
-    }
-    samples_.push_back({{fingers.begin(), fingers.end()}, is_onset, begins_});
-    begins_ = false;
-    return true;
-  }
-
-  /// The thresholds that find the most onsets with a precision of at least `min_precision`; of
-  /// equally good ones, the middle. Not ok() if there are none, or if the alarms are no better than
-  /// chance. Refuses (parameter_error) samples of which none, or all, are marked, and a
-  /// `min_precision` outside [0, 1]. Takes O(samples history) time, 96 times.
-  PreslipFit fit(double min_precision = 0.9) const {
-    const auto marked =
-        std::count_if(samples_.begin(), samples_.end(), [](const Marked& s) { return s.is_onset; });
-    const auto others = static_cast<Index>(samples_.size()) - marked;
-    require("PreslipCalibration", {{"min_precision", min_precision, within(0, 1)},
-                                   {"marked samples", marked, at_least(1)},
-                                   {"samples without a mark", others, at_least(1)}});
-    const auto is_better = [&](const PreslipFit& a, const PreslipFit& b) {
-      const bool a_holds = a.precision() >= min_precision, b_holds = b.precision() >= min_precision;
-      return a_holds != b_holds   ? a_holds
-             : a.found != b.found ? a.found > b.found
-                                  : a.precision() > b.precision();
-    };
-    std::vector<PreslipFit> best;  // equally good ones, with the same min_waves
-    for (Index min_waves = 0; min_waves < 8; ++min_waves) {
-      for (const double tolerance_mm : {0., 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1., 2., 3., 5., 10.}) {
-        PreslipOptions options = rule_.options();
-        options.min_waves = min_waves;
-        options.centroid_tolerance_mm = tolerance_mm;
-        const PreslipFit next = judge(options);
-        if (best.empty() || is_better(next, best.front())) {
-          best.assign(1, next);
-        } else if (!is_better(best.front(), next) && best.front().options.min_waves == min_waves) {
-          best.push_back(next);
-        }
-      }
-    }
-    PreslipFit fit = best[best.size() / 2];
-    fit.cause = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
-                    ? nullptr
-                    : PreslipFit::onsets_not_found;
-    return fit;
-  }
-
-  /// Judges given thresholds, for example from other recordings, on these samples; gives no cause.
-  /// Refuses bad parameters (parameter_error).
-  PreslipFit judge(const PreslipOptions& options) const {
-    Preslip<S> rule(static_cast<Index>(fingers_), options);
-    PreslipFit score;
-    score.options = options;
-    bool in_onset = false, is_found = false;
-    for (const Marked& s : samples_) {
-      if (s.begins) {
-        rule.reset();
-        in_onset = false;
-      }
-      const bool alarms = rule(s.fingers) == PreslipStatus::preslip;
-      const bool is_new = s.is_onset && !in_onset, is_right = alarms && s.is_onset;
-      in_onset = s.is_onset;
-      is_found = is_found && !is_new;
-      ++score.samples;
-      score.marked += s.is_onset ? 1 : 0;
-      score.onsets += is_new ? 1 : 0;
-      score.alarms += alarms ? 1 : 0;
-      score.right += is_right ? 1 : 0;
-      score.found += is_right && !is_found ? 1 : 0;
-      is_found = is_found || is_right;
-    }
-    return score;
-  }
-
- private:
-  struct Marked {
-    std::vector<FingerSample<S>> fingers;
-    bool is_onset;
-    bool begins;
-  };
-
-  std::size_t fingers_;
-  Preslip<S> rule_;
-  std::vector<Marked> samples_;
-  bool begins_ = true;
+struct MarkedSample {
+  std::vector<FingerSample<S>> fingers;
+  bool is_onset = false;
+  bool begins = false;  ///< another recording: it is not compared with earlier samples
 };
+
+/// Judges given thresholds, for example from other recordings; gives no cause. Refuses bad options
+/// and samples without fingers (parameter_error). O(samples history).
+template <scalar S = double>
+PreslipFit judge_preslip(std::type_identity_t<std::span<const MarkedSample<S>>> samples,
+                         const PreslipOptions& options = {}) {
+  const std::size_t fingers = samples.empty() ? 0 : samples.front().fingers.size();
+  Preslip<S> rule(static_cast<Index>(fingers), options);
+  PreslipFit score;
+  score.options = options;
+  bool in_onset = false, is_found = false;
+  for (const MarkedSample<S>& s : samples) {
+    if (s.begins) {
+      rule.reset();
+      in_onset = false;
+    }
+    const bool alarms = rule(s.fingers) == PreslipStatus::preslip;
+    const bool is_new = s.is_onset && !in_onset, is_right = alarms && s.is_onset;
+    in_onset = s.is_onset;
+    is_found = is_found && !is_new;
+    ++score.samples;
+    score.marked += s.is_onset ? 1 : 0;
+    score.onsets += is_new ? 1 : 0;
+    score.alarms += alarms ? 1 : 0;
+    score.right += is_right ? 1 : 0;
+    score.found += is_right && !is_found ? 1 : 0;
+    is_found = is_found || is_right;
+  }
+  return score;
+}
+
+/// The thresholds, for the rule and history of `options`, that find the most onsets with a
+/// precision of at least `min_precision`; of equally good ones, the middle. Not ok() if there are
+/// none, or if the alarms are no better than chance. Refuses (parameter_error) what judge_preslip
+/// refuses, samples of which none, or all, are marked, and a `min_precision` outside [0, 1]. Takes
+/// O(samples history) time, 96 times.
+template <scalar S = double>
+PreslipFit fit_preslip(std::type_identity_t<std::span<const MarkedSample<S>>> samples,
+                       PreslipOptions options = {},
+                       double min_precision = 0.9) {
+  const auto marked = std::count_if(samples.begin(), samples.end(),
+                                    [](const MarkedSample<S>& s) { return s.is_onset; });
+  const auto others = static_cast<Index>(samples.size()) - marked;
+  require("fit_preslip", {{"min_precision", min_precision, within(0, 1)},
+                          {"marked samples", marked, at_least(1)},
+                          {"samples without a mark", others, at_least(1)}});
+  const auto is_better = [&](const PreslipFit& a, const PreslipFit& b) {
+    const bool a_holds = a.precision() >= min_precision, b_holds = b.precision() >= min_precision;
+    return a_holds != b_holds   ? a_holds
+           : a.found != b.found ? a.found > b.found
+                                : a.precision() > b.precision();
+  };
+  std::vector<PreslipFit> best;  // equally good ones, with the same min_waves
+  for (options.min_waves = 0; options.min_waves < 8; ++options.min_waves) {
+    for (const double tolerance_mm : {0., 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1., 2., 3., 5., 10.}) {
+      options.centroid_tolerance_mm = tolerance_mm;
+      const PreslipFit next = judge_preslip<S>(samples, options);
+      if (best.empty() || is_better(next, best.front())) {
+        best.assign(1, next);
+      } else if (!is_better(best.front(), next) &&
+                 best.front().options.min_waves == options.min_waves) {
+        best.push_back(next);
+      }
+    }
+  }
+  PreslipFit fit = best[best.size() / 2];
+  fit.cause = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
+                  ? nullptr
+                  : PreslipFit::onsets_not_found;
+  return fit;
+}
 
 }  // namespace v0
 }  // namespace fingerpad
