@@ -3,8 +3,7 @@
 // The whole chain from a frame to all results (pipeline/fingertip.hpp), as JSON: error of each
 // result, time of each stage, time against error by the step of the samples, instructions and
 // cycles where the machine counts them, what a copy costs, the distribution of latencies over
-// 10,000 frames, and growth with the size of the image, the number of dots and the length of the
-// history.
+// 10,000 frames, and growth with the size of the image and the number of dots.
 // Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" only times that many
 // frames.
 #include <algorithm>
@@ -226,7 +225,7 @@ ordered_json latencies_of(Fingertip chain, const chain::PressedFrames& frames, i
   return out;
 }
 
-/// Medians of the lean chain's stages over image sizes, dots and stored frames.
+/// Medians of the lean chain's stages over image sizes and dots.
 ordered_json growth() {
   ordered_json out = ordered_json::array();
   const auto add = [&](const char* by, Index size, const FingertipOptions& options,
@@ -243,12 +242,6 @@ ordered_json growth() {
   for (const Index dots : {11, 21, 41, 81}) {
     const chain::PressedFrames frames(480, 640, 16, dots);
     add("dots", dots * dots, frames.options(), frames, 200);
-  }
-  const chain::PressedFrames frames;
-  for (const Index history : {16, 64, 256, 1024}) {
-    auto options = frames.options();
-    options.stick.capacity = history;
-    add("stored frames", history, options, frames, static_cast<int>(2 * history) + 200);
   }
   return out;
 }

@@ -184,7 +184,7 @@ def chain_latencies(runs, path):
 
 
 def chain_growth(run, path):
-    """Times of the stages over the numbers of pixels, dots and stored frames."""
+    """Times of the stages over the numbers of pixels and dots."""
     kinds = list(dict.fromkeys(g["by"] for g in run["growth"]))
     figure, all_axes = plt.subplots(1, len(kinds), figsize=(11, 3.6), sharey=True)
     for axes, kind in zip(all_axes, kinds):

@@ -165,16 +165,14 @@ void add_opencv() {
 
 void add_growth() {
   static const Recording small(11, 11, 0.6), large(41, 41, 0.6), slow(21, 21, 0.05);
-  const auto grow = [](const char* what, const Recording& input, const StickOptions& options) {
+  const auto grow = [](const char* what, const Recording& input) {
     const Index dots = input.contact.rows();
-    add(std::string("growth/") + what, input, StickRatio<>(dots, dots, options),
-        options.slip_share);
+    add(std::string("growth/") + what, input, StickRatio<>(dots, dots), StickOptions().slip_share);
   };
-  grow("21x21 dots, 64 stored frames", recording(), {});
-  grow("11x11 dots", small, {});
-  grow("41x41 dots", large, {});
-  grow("1024 stored frames", recording(), {.capacity = 1024});
-  grow("moving by 0.05 px a frame", slow, {});
+  grow("21x21 dots, 64 stored frames", recording());
+  grow("11x11 dots", small);
+  grow("41x41 dots", large);
+  grow("moving by 0.05 px a frame", slow);
 }
 
 }  // namespace

@@ -68,9 +68,6 @@ void bind_slip(py::module_& module) {
       .def_readwrite("noise", &StickOptions::noise,
                      "standard deviation of a dot along x and along y; 0: measured")
       .def_readwrite("slip_share", &StickOptions::slip_share)
-      .def_readwrite("false_slip", &StickOptions::false_slip)
-      .def_readwrite("min_dots", &StickOptions::min_dots, ">= 6")
-      .def_readwrite("hold_s", &StickOptions::hold_s, "s, >= 0")
       .def_readwrite("covers_pattern", &StickOptions::covers_pattern,
                      "whether the object is larger than the dot pattern; if not, there is no ratio "
                      "while all dots count as in contact and some do not follow");
@@ -88,8 +85,7 @@ void bind_slip(py::module_& module) {
       .def_readonly("unknown", &Result::unknown, "dots in contact of unknown state")
       .def_readonly("out_of_place", &Result::out_of_place)
       .def_property_readonly(
-          "back",
-          [](const Result& r) { return py::make_tuple(r.back.stick_ratio, r.back.reference_age); },
+          "back", [](const Result& r) { return py::make_tuple(r.back_ratio, r.back_age); },
           "stick ratio and age of its reference, if the dots fall back")
       .def_readonly("stick_ratio", &Result::stick_ratio, "in [0, 1]; NaN if not known yet")
       .def_readonly("ratio_sd", &Result::ratio_sd, "standard deviation of stick_ratio")

@@ -189,8 +189,8 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
         estimate(np.zeros((480, 480, 3), "u1, u2")["f1"][..., 0], green.astype(np.uint16))
     with pytest.raises(ValueError, match=r"^Camera: pitch_mm = -1, must be finite and > 0$"):
         fp.Wrench(fp.Camera(pitch_mm=-1))
-    with pytest.raises(fp.ParameterError, match="slip = 0"):
-        fp.StickRatio(9, 9, fp.StickOptions(false_slip=0))
+    with pytest.raises(fp.ParameterError, match="slip_share = 0"):
+        fp.StickRatio(9, 9, fp.StickOptions(slip_share=0))
     with pytest.raises(ValueError, match="9 x 9"):
         fp.StickRatio(9, 9)(np.zeros((8, 9, 2)), np.ones((8, 9), bool))
     with pytest.raises(fp.ParameterError, match="usable samples"):
@@ -215,8 +215,8 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
     ("normal_force_n must contain real", lambda ratio, d: fp.fit_normal_force([1, 2], ["1", "2"])),
     ("rows must be an int, not bool", lambda ratio, d: fp.StickRatio(True, 9)),
     ("cols must be an int, not float", lambda ratio, d: fp.FoamHand(4, 4.0)),
-    ("StickOptions: min_dots must be an int, not bool",
-     lambda ratio, d: fp.StickOptions(min_dots=True)),
+    ("StickOptions: noise must be a real number, not bool",
+     lambda ratio, d: fp.StickOptions(noise=True)),
     ("Camera: pitch_mm must be a real number, not complex128",
      lambda ratio, d: fp.Camera(pitch_mm=np.complex128(0.1 + 1j))),
     ("StickOptions: covers_pattern must be True or False, not str",

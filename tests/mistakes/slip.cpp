@@ -368,8 +368,8 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
       CHECK(message.find(what) != std::string::npos);
     }
   }
-  const std::string too_many = "cells in memory = 4096000000, must be <= 100000000";
-  CHECK(refusal([] { const StickRatio<> r(1000, 1000, {.capacity = 4096}); }) ==
+  const std::string too_many = "cells in memory = 128000000, must be <= 100000000";
+  CHECK(refusal([] { const StickRatio<> r(1000, 2000); }) ==
         "StickRatio: " + too_many);
 }
 

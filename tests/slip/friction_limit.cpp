@@ -224,7 +224,9 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
   (void)limit(pull(2.2), seen);
   seen.status = StickStatus::falls_back;
   seen.ratio_sd = 0.3;
-  seen.back = {.stick_ratio = 0.8, .ratio_sd = 0.15, .reference_age = 1};
+  seen.back_ratio = 0.8;
+  seen.back_sd = 0.15;
+  seen.back_age = 1;
   SECTION("an object that turns round carries them, and its load falls") {
     const auto r = limit(pull(1.8), seen);
     CHECK(r.stick_ratio == 0.8);
@@ -251,10 +253,12 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
       limit.reset();
       seen.status = StickStatus::updated;
       seen.stick_ratio = c.told;
-      seen.back = {};
+      seen.back_ratio = test::nan;
       (void)limit(pull(2.2), seen);
       seen.status = StickStatus::falls_back;
-      seen.back = {.stick_ratio = 0.8, .ratio_sd = 0.15, .reference_age = 1};
+      seen.back_ratio = 0.8;
+      seen.back_sd = 0.15;
+      seen.back_age = 1;
       const auto r = limit(pull(c.pull_n), seen);
       CHECK(r.stick_ratio == c.stick_ratio);
       CHECK(r.falls_back);
@@ -277,7 +281,7 @@ TEST_CASE("friction limit: dots that fall back are asked where the load falls wi
   SECTION("the reference may be 64 frames back, and every load since then must be known") {
     limit.reset();
     seen.stick_ratio = 0.6;
-    seen.back.reference_age = 64;
+    seen.back_age = 64;
     const auto after = [&](int frames, const ContactLoad<double>& between) {
       limit.reset();
       (void)limit(pull(2.2), 0.9, RatioUpdate::fresh);
@@ -335,13 +339,14 @@ TEST_CASE("friction limit: which dots hold", "[friction_limit]") {
     (void)limit(pull(2.2), ratio(0.3, 0.01));
     auto seen = ratio(0.3, 0.01);
     seen.status = StickStatus::falls_back;
-    seen.back = {.stick_ratio = 0.9, .reference_age = 1};
+    seen.back_ratio = 0.9;
+    seen.back_age = 1;
     auto again = limit;
     CHECK(held(again(pull(1.8), seen)) == "1111");
     again = limit;
     CHECK(held(again(pull(2.06), seen)) == "1101");  // the load does not say who moves them
     CHECK(without_force(seen) == "1101");
-    seen.back.stick_ratio = 0.5;  // half of them slip: too many for a fit
+    seen.back_ratio = 0.5;  // half of them slip: too many for a fit
     (void)limit(pull(2.2), ratio(0.3, 0.01));
     CHECK(held(limit(pull(1.8), seen)) == "1101");
   }

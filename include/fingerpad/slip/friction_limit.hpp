@@ -262,16 +262,16 @@ class FrictionLimit {
     S ratio = S(seen.stick_ratio), sd = S(seen.ratio_sd);
     Index age = seen.reference_age;
     bool falls_back = false, carried = false;
-    if constexpr (requires { seen.back.reference_age; }) {
-      falls_back = is_finite(seen.back.stick_ratio);
+    if constexpr (requires { seen.back_age; }) {
+      falls_back = is_finite(seen.back_ratio);
       if (falls_back) {
-        age = seen.back.reference_age;
+        age = seen.back_age;
         const S before = highest_of_last(age), now = friction_with(load);
         carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
         const bool slides =
             S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
-        ratio = carried ? S(seen.back.stick_ratio) : slides ? S(0) : ratio;
-        sd = carried ? S(seen.back.ratio_sd) : sd;
+        ratio = carried ? S(seen.back_ratio) : slides ? S(0) : ratio;
+        sd = carried ? S(seen.back_sd) : sd;
         update = carried || slides ? RatioUpdate::fresh : update;
       }
     }

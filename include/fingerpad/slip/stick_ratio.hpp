@@ -77,23 +77,16 @@ constexpr const char* name_of(StickStatus status) {
 }
 
 /// Noise of the dots, and what counts as slip. Lengths are in the unit of the dots, whatever it is.
-/// All thresholds follow from the noise:
-///   delta_0 = 2 gain noise sqrt(ln(1 / false_slip)), gain 0.416 by averaging over neighbours,
+/// The thresholds follow from the noise, 1 % of sticking dots being taken for slipping:
+///   delta_0 = 2 gain noise sqrt(ln(1 / 0.01)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
 ///   has moved further, else by U / 2 (in the image only where the noise is not given); a frame is
-///   stored when a dot has moved U / 4 from the newest stored one.
+///   stored when a dot has moved U / 4 from the newest stored one. The last 64 are kept.
 struct StickOptions {
   /// Standard deviation of a dot along x and along y, >= 0; 0: measured between successive frames.
   double noise = 0;
   /// A dot slips if its slip exceeds this fraction of the longest displacement, in (0, 0.5].
   double slip_share = 1.0 / 18;
-  /// Fraction of sticking dots that noise makes appear to slip, in (0, 0.5].
-  double false_slip = 0.01;
-  Index min_dots = 6;  ///< needed to compare two frames, >= 6
-  /// A contact lost and found again within this time is the same one, and a clock may go back by as
-  /// much; beyond that another recording has begun. In s, >= 0.
-  double hold_s = 0.2;
-  Index capacity = 64;  ///< stored frames, in [1, 4096]; when full, the oldest is dropped
   /// Whether the object is known to be larger than the dot pattern. If not, a contact that contains
   /// all dots has no ratio once more than a tenth of them slip.
   bool covers_pattern = false;
@@ -103,20 +96,8 @@ struct StickOptions {
 inline std::string check(const StickOptions& o) {
   return check("StickOptions",
                {{"noise", o.noise, not_negative},
-                {"slip_share", o.slip_share, {.min = 0, .max = 0.5, .above_min = true}},
-                {"false_slip", o.false_slip, {.min = 0, .max = 0.5, .above_min = true}},
-                {"min_dots", o.min_dots, at_least(6)},
-                {"hold_s", o.hold_s, not_negative},
-                {"capacity", o.capacity, within(1, 4096)}});
+                {"slip_share", o.slip_share, {.min = 0, .max = 0.5, .above_min = true}}});
 }
-
-/// Dots that move back toward their free positions.
-template <scalar S = double>
-struct FallingBack {
-  S stick_ratio = not_a_number<S>();  ///< if the object carries them; NaN: they do not fall back
-  S ratio_sd = not_a_number<S>();
-  Index reference_age = 0;  ///< frames since the reference
-};
 
 /// Result of a frame. If the status is neither `updated` nor `no_outline`, all from stick_ratio on
 /// is that of the last frame with an answer in this contact; while nothing touches, the ratio is
@@ -125,8 +106,11 @@ template <scalar S = double>
 struct [[nodiscard]] StickResult {
   StickStatus status = StickStatus::refused;
   Index stick = 0, slip = 0, unknown = 0;  ///< dots in contact, by their state
-  Index out_of_place = 0;    ///< dots in contact that are not between their neighbours: left out
-  FallingBack<S> back = {};  ///< if the status is falls_back
+  Index out_of_place = 0;  ///< dots in contact that are not between their neighbours: left out
+  /// If the status is falls_back: the ratio of this frame if the object carries the dots back, its
+  /// standard deviation, and the frames since its reference.
+  S back_ratio = not_a_number<S>(), back_sd = not_a_number<S>();
+  Index back_age = 0;
   S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
   /// Its standard deviation as found on simulated contacts, sqrt(0.065^2 + 0.9^2 / n) with n dots
   /// in contact, and 0.05 more with each frame for which the ratio has been kept, up to 0.5.
@@ -146,8 +130,8 @@ struct [[nodiscard]] StickResult {
 };
 
 /// Stick ratio of a pad, frame by frame. The object is the state: copy it to return to a frame
-/// later. A frame takes O(rows cols) time, plus O(dots in contact) for each of at most `capacity`
-/// stored frames that it examines. It allocates nothing and throws nothing.
+/// later. A frame takes O(rows cols) time, plus O(dots in contact) for each stored frame that it
+/// examines. It allocates nothing and throws nothing.
 template <scalar S = double>
 class StickRatio {
   using P = Point3<S>;
@@ -155,22 +139,19 @@ class StickRatio {
  public:
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
   StickRatio(Index rows, Index cols, const StickOptions& options = {})
-      : options_((expects_grid_size("StickRatio", rows, cols, 1, options.capacity),
-                  require(options),
-                  options)),
+      : options_(
+            (expects_grid_size("StickRatio", rows, cols, 1, capacity), require(options), options)),
         frame_{rows, cols},
         now_(frame_.found),
         free_(frame_.found),
         measured_noise_(now_.size(), frame_.width),
-        touches_(now_.size(), 0),
         states_(now_.size(), DotState::none),
         slips_(now_.size(), no_slip()),
         small_(now_.size()),
-        stored_(now_.size() * static_cast<std::size_t>(options.capacity)),
-        stored_at_(static_cast<std::size_t>(options.capacity)),
+        stored_(now_.size() * static_cast<std::size_t>(capacity)),
+        stored_at_(static_cast<std::size_t>(capacity)),
         placed_(now_.size()),
-        pairs_(now_.size()),
-        sorted_(now_.size()) {}
+        pairs_(now_.size()) {}
 
   Index rows() const { return frame_.rows; }
   Index cols() const { return frame_.cols; }
@@ -185,7 +166,9 @@ class StickRatio {
 
   /// Processes a frame with the dots `dots` (NaN: not found; so are two or more at exactly 0 or
   /// exactly -1), of which those with a true `contact` touch the object, at a time in s (NaN:
-  /// unknown). Points with a z are in space, others in the image. A recording has one kind.
+  /// unknown). Points with a z are in space, others in the image. A recording has one kind. A
+  /// contact lost and found again within 0.2 s is the same one, and a clock may go back by as much;
+  /// beyond that another recording has begun.
   template <dot_grid Dots, contact_mask Contact>
   StickResult<S> operator()(const Dots& dots,
                             const Contact& contact,
@@ -195,7 +178,7 @@ class StickRatio {
     if (from.rows() != rows() || from.cols() != cols() || !same_size(from, touch)) {
       return {};
     }
-    if (time_s < latest_s_ - options_.hold_s) {
+    if (time_s < latest_s_ - hold_s) {
       forget();
       latest_s_ = contact_s_ = never;
     }
@@ -206,20 +189,17 @@ class StickRatio {
       measured_noise_.add(frame_.found);
     }
     read_contact(touch);
-    result_.out_of_place = 0;
-    result_.back = {};
+    result_.back_ratio = result_.back_sd = not_a_number<S>();
     result_.status = touching_ > 0 ? with_contact(time_s) : without_contact(time_s);
     count_states();
-    if (result_.updated() && lacks_outline()) {
+    const S sd = sqrt_of(S(square(0.065)) + S(square(0.9)) / detail::number<S>(touching_));
+    result_.ratio_sd = result_.updated() ? sd : (std::min)(result_.ratio_sd + S(0.05), S(0.5));
+    result_.back_sd = is_finite(result_.back_ratio) ? sd : not_a_number<S>();
+    const bool slips = 10 * result_.slip > result_.stick + result_.slip;
+    if (result_.updated() && slips && !has_outline_ && !options_.covers_pattern) {
       result_.status = StickStatus::no_outline;
-      result_.stick_ratio = not_a_number<S>();
+      result_.stick_ratio = result_.ratio_sd = not_a_number<S>();
     }
-    const S fresh_sd = sqrt_of(S(square(0.065)) + S(square(0.9)) / detail::number<S>(touching_));
-    const S kept_sd = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
-    result_.ratio_sd = !is_finite(result_.stick_ratio) ? not_a_number<S>()
-                       : result_.updated()             ? fresh_sd
-                                                       : kept_sd;
-    result_.back.ratio_sd = is_finite(result_.back.stick_ratio) ? fresh_sd : not_a_number<S>();
     StickResult<S> result = result_;
     if (result.status == StickStatus::no_contact) {
       result.stick_ratio = result.ratio_sd = not_a_number<S>();
@@ -237,7 +217,10 @@ class StickRatio {
 
  private:
   static constexpr double never = -std::numeric_limits<double>::infinity();
-  static constexpr Index min_followers = 4;
+  static constexpr double hold_s = 0.2;
+  static constexpr Index capacity = 64, min_dots = 6, min_followers = 4;
+  static constexpr double gain = 0.41573970964154905;  // sqrt(6^2 + 4 2^2 + 4 1^2) / 18
+  static constexpr double ln_100 = 4.605170185988092;  // of 1 / 0.01
 
   /// A dot that was found in both frames.
   struct Pair {
@@ -246,11 +229,7 @@ class StickRatio {
     S weight;              // in the fit of the motion
     Point2<S> slip, mean;  // of itself, and averaged over neighbours
     S limit_sq;            // the dot slips if its mean is longer
-  };
-  /// A slip that counts in the mean of its neighbours; 0 if it does not.
-  struct SmallSlip {
-    Point2<S> slip = {S(0), S(0)};
-    S counts = S(0);
+    bool sticks() const { return value(squared_norm(mean)) < value(limit_sq); }
   };
   template <class T>
   using Grid = detail::Bordered<T>;
@@ -262,20 +241,46 @@ class StickRatio {
   /// Drops the contact: its frames cannot be compared with those of the next one.
   void forget() {
     stored_count_ = 0;
-    has_center_ = false;
+    center_ = detail::missing_point<S>();
     result_ = {};
     std::fill(states_.begin(), states_.end(), DotState::none);
     std::fill(slips_.begin(), slips_.end(), no_slip());
   }
 
+  /// Reads which dots touch, and keeps in `now` those of them that lie between their neighbours.
   template <class View>
   void read_contact(const View& contact) {
-    touching_ = 0;
+    touching_ = crossed_ = result_.out_of_place = 0;
+    placed_.clear();
+    std::fill(now_.begin(), now_.end(), detail::missing_point<S>());
+    int sides = 0;  // that the dots found reach
+    bool all_touch = true;
     for (Index i = 0; i < rows(); ++i) {
       for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
-        touches_[k] = is_contact(cell_t<View>(contact(i, j))) ? 1 : 0;
-        touching_ += touches_[k];
+        const bool touches = is_contact(cell_t<View>(contact(i, j)));
+        states_[k] = touches ? (std::max)(states_[k], DotState::unknown) : DotState::none;
+        touching_ += touches ? 1 : 0;
+        if (is_finite(frame_.found[k])) {
+          all_touch = all_touch && touches;
+          sides |= (i == 0 ? 1 : 0) | (i == rows() - 1 ? 2 : 0);
+          sides |= (j == 0 ? 4 : 0) | (j == cols() - 1 ? 8 : 0);
+          if (touches) {
+            place(k, frame_.is_out_of_line(k, j, cols(), 1),
+                  frame_.is_out_of_line(k, i, rows(), frame_.width));
+          }
+        }
       }
+    }
+    has_outline_ = !all_touch || sides != 15;
+  }
+  /// A single wrong neighbour does not put a dot out of line in its row and in its column.
+  void place(Index k, bool out_of_row, bool out_of_col) {
+    crossed_ += out_of_row && out_of_col ? 1 : 0;
+    if (out_of_row || out_of_col) {
+      ++result_.out_of_place;
+    } else {
+      placed_.push_back(k);
+      now_[k] = frame_.found[k];
     }
   }
 
@@ -283,7 +288,7 @@ class StickRatio {
     if (frame_.count == 0) {
       return StickStatus::too_few_dots;
     }
-    if (!(time_s - contact_s_ <= options_.hold_s)) {
+    if (!(time_s - contact_s_ <= hold_s)) {
       forget();
       std::copy(frame_.found.begin(), frame_.found.end(), free_.begin());
     }
@@ -293,11 +298,10 @@ class StickRatio {
   /// Status of this frame. Fills all of the result but the counts.
   StickStatus with_contact(double time_s) {
     contact_s_ = is_finite(time_s) ? time_s : contact_s_;
-    const Index crossed = place();
-    if (5 * crossed > detail::size_of(placed_) + result_.out_of_place) {
+    if (5 * crossed_ > detail::size_of(placed_) + result_.out_of_place) {
       return StickStatus::not_in_order;
     }
-    if (detail::size_of(placed_) < options_.min_dots) {
+    if (detail::size_of(placed_) < min_dots) {
       return StickStatus::too_few_dots;
     }
     if (!frame_.in_image) {
@@ -307,86 +311,9 @@ class StickRatio {
     const S pitch = sqrt_of(pitch_sq_), known = S(noise());
     // no camera finds dots better than a 2000th of a pitch
     sd_ = value(known) > 0 ? (std::max)(known, S(pitch / S(2000))) : S(pitch / S(150));
-    const S reference =
-        sd_ * S(2 * gain() * std::sqrt(std::log(1 / options_.false_slip)) / options_.slip_share);
+    const S reference = sd_ * S(2 * gain * std::sqrt(ln_100) / options_.slip_share);
     return 2 * value(reference) > value(pitch) && value(pitch) > 0 ? StickStatus::not_in_order
                                                                    : compare(reference * reference);
-  }
-
-  /// Searches the reference, answers by it, and stores the frame. The search goes back from the
-  /// newest frame as long as the distance grows. Where it begins to shrink, the object has
-  /// reversed, and older frames are not examined. If none is further than U, the newest one further
-  /// than U / 2 will do, with the limit of U; in the image only where the noise is not given.
-  StickStatus compare(const S& reference_sq) {
-    StickStatus status = StickStatus::unmoved;
-    Index reference = -1;
-    S before = S(-1);
-    bool rests = false;
-    // of a rolling object, which no motion in the image describes, a short one makes dots slip
-    const bool is_strict = frame_.in_image && options_.noise > 0;
-    furthest_sq_ = S(-1);
-    for (Index age = 0; age < stored_count_ && value(before) <= value(reference_sq); ++age) {
-      const Index slot = (newest_ + options_.capacity - age) % options_.capacity;
-      const P* const then = stored_.data() + slot * detail::size_of(now_);
-      S sq = S(-1);  // d_max^2
-      for (const Index k : placed_) {
-        const S moved_sq = squared_norm(now_[k] - then[k]);
-        sq = value(moved_sq) > value(sq) ? moved_sq : sq;
-      }
-      if (age == 0 && value(sq) > 4 * value(reference_sq) &&
-          detail::is_renumbered(placed_, now_.data(), then, frame_.width, pitch_sq_)) {
-        return StickStatus::not_in_order;
-      }
-      rests = rests || (age == 0 && value(sq) >= 0 && 16 * value(sq) <= value(reference_sq));
-      // At rest the image is not compared again: a membrane that creeps under a sliding object
-      // would seem to stick more and more. In space, forces tell of the slide.
-      if (value(sq) < value(before) || (rests && frame_.in_image)) {
-        break;
-      }
-      before = sq;
-      const bool beyond = value(sq) > value(reference_sq);
-      const bool near = !is_strict && 4 * value(sq) > value(reference_sq);
-      if (beyond || (reference < 0 && near)) {
-        reference = slot;
-        furthest_sq_ = sq;
-      }
-    }
-    if (reference >= 0) {
-      limit_sq_ = S(square(options_.slip_share)) * (std::max)(furthest_sq_, reference_sq);
-      status = answer(stored_.data() + reference * detail::size_of(now_),
-                      static_cast<Index>(count_ - stored_at_[reference]));
-    }
-    if (!rests) {
-      newest_ = (newest_ + 1) % options_.capacity;
-      stored_count_ = (std::min)(stored_count_ + 1, options_.capacity);
-      stored_at_[newest_] = count_;
-      std::copy(now_.begin(), now_.end(), stored_.begin() + newest_ * detail::size_of(now_));
-    }
-    return status;
-  }
-
-  /// Keeps in `now` the dots in contact that lie between their neighbours. Returns how many do so
-  /// neither in their row nor in their column, which a single wrong neighbour does not cause.
-  Index place() {
-    std::fill(now_.begin(), now_.end(), detail::missing_point<S>());
-    placed_.clear();
-    Index crossed = 0;
-    for (Index i = 0; i < rows(); ++i) {
-      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
-        if (touches_[k] != 0 && is_finite(frame_.found[k])) {
-          const bool row = frame_.is_out_of_line(k, j, cols(), 1);
-          const bool col = frame_.is_out_of_line(k, i, rows(), frame_.width);
-          crossed += row && col ? 1 : 0;
-          if (row || col) {
-            ++result_.out_of_place;
-          } else {
-            placed_.push_back(k);
-            now_[k] = frame_.found[k];
-          }
-        }
-      }
-    }
-    return crossed;
   }
 
   /// Depth is several times as noisy as x and y: it is taken from the quadric through all dots.
@@ -401,6 +328,118 @@ class StickRatio {
     }
   }
 
+  /// Searches the reference, answers by it, and stores the frame unless the dots rest.
+  StickStatus compare(const S& reference_sq) {
+    const S moved_sq = stored_count_ > 0 ? furthest_sq_from(stored(0)) : S(-1);
+    if (value(moved_sq) > 4 * value(reference_sq) &&
+        detail::is_renumbered(placed_, now_.data(), stored(0), frame_.width, pitch_sq_)) {
+      return StickStatus::not_in_order;
+    }
+    const bool rests = value(moved_sq) >= 0 && 16 * value(moved_sq) <= value(reference_sq);
+    // At rest the image is not compared again: a membrane that creeps under a sliding object would
+    // seem to stick more and more. In space, forces tell of the slide.
+    const Index age = rests && frame_.in_image ? -1 : age_of_reference(reference_sq);
+    StickStatus status = StickStatus::unmoved;
+    if (age >= 0) {
+      furthest_sq_ = furthest_sq_from(stored(age));
+      limit_sq_ = S(square(options_.slip_share)) * (std::max)(furthest_sq_, reference_sq);
+      status = answer(stored(age), static_cast<Index>(count_ - stored_at_[slot(age)]));
+    }
+    if (!rests) {
+      newest_ = (newest_ + 1) % capacity;
+      stored_count_ = (std::min)(stored_count_ + 1, capacity);
+      stored_at_[newest_] = count_;
+      std::copy(now_.begin(), now_.end(), stored_.begin() + newest_ * detail::size_of(now_));
+    }
+    return status;
+  }
+  /// The newest stored frame further than U, else the newest one further than U / 2, which will do
+  /// with the limit of U; -1: none. The search goes back as long as the distance grows. Where it
+  /// begins to shrink, the object has reversed, and older frames are not examined. Of a rolling
+  /// object, which no motion in the image describes, U / 2 makes dots slip: it is not for an image
+  /// whose noise is given.
+  Index age_of_reference(const S& reference_sq) const {
+    const bool is_strict = frame_.in_image && options_.noise > 0;
+    Index near = -1;
+    S before = S(-1);
+    for (Index age = 0; age < stored_count_; ++age) {
+      const S sq = furthest_sq_from(stored(age));
+      if (value(sq) < value(before)) {
+        break;
+      }
+      if (value(sq) > value(reference_sq)) {
+        return age;
+      }
+      near = near < 0 && !is_strict && 4 * value(sq) > value(reference_sq) ? age : near;
+      before = sq;
+    }
+    return near;
+  }
+  Index slot(Index age) const { return (newest_ + capacity - age) % capacity; }
+  const P* stored(Index age) const { return stored_.data() + slot(age) * detail::size_of(now_); }
+  /// d_max^2; -1 if no dot was found then as well.
+  S furthest_sq_from(const P* then) const {
+    S furthest_sq = S(-1);
+    for (const Index k : placed_) {
+      const S sq = squared_norm(now_[k] - then[k]);
+      furthest_sq = value(sq) > value(furthest_sq) ? sq : furthest_sq;
+    }
+    return furthest_sq;
+  }
+
+  /// Compares the frame with its reference.
+  StickStatus answer(const P* then, Index age) {
+    collect(then);
+    if (detail::size_of(pairs_) < min_dots || !find_object()) {
+      return StickStatus::too_few_dots;
+    }
+    const Index stick =
+        std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.sticks(); });
+    const S ratio = detail::number<S>(stick) / detail::number<S>(detail::size_of(pairs_));
+    if (falls_back()) {
+      result_.back_ratio = ratio;
+      result_.back_age = age;
+      return StickStatus::falls_back;
+    }
+    for (DotState& state : states_) {
+      state = (std::min)(state, DotState::unknown);
+    }
+    std::fill(slips_.begin(), slips_.end(), no_slip());
+    for (Pair& p : pairs_) {
+      states_[p.k] = p.sticks() ? DotState::stick : DotState::slip;
+      slips_[p.k] = p.mean;
+      p.weight = S(p.sticks() ? 1 : 0);
+    }
+    center_ = stick > 0 ? mean_of([](const Pair& p) { return p.now; }) : center_;
+    result_.stick_ratio = ratio;
+    result_.furthest = sqrt_of(furthest_sq_);
+    result_.reference_age = age;
+    result_.motion = motion_;
+    result_.scale = scale_;
+    return StickStatus::updated;
+  }
+
+  void collect(const P* then) {
+    pairs_.clear();
+    for (const Index k : placed_) {
+      if (is_finite(then[k])) {
+        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, limit_of(k, then)});
+      }
+    }
+  }
+  /// Where neighbours are missing or do not touch, a mean has more noise. Beside dots that slip too
+  /// far to count in it the limit stays: there a large slip is likely to be true. In space it stays
+  /// as well, as dots that leave a rolling object at the edge slip by little.
+  S limit_of(Index k, const P* then) const {
+    S weights = S(0), squares = S(0);
+    around(k, [&](const S& weight, Index at) {
+      const S there = S(is_finite(then[at]) && is_finite(now_[at]) ? 1 : 0);
+      weights = weights + weight * there;
+      squares = squares + weight * weight * there;
+    });
+    const S noise_sq = S(4 * ln_100) * sd_ * sd_ * squares / (weights * weights);
+    return frame_.in_image ? (std::max)(limit_sq_, noise_sq) : limit_sq_;
+  }
   /// Visits a dot and its eight neighbours with their weights in a mean.
   template <class Visit>
   void around(Index k, const Visit& visit) const {
@@ -414,100 +453,29 @@ class StickRatio {
     }
   }
 
-  void collect(const P* then) {
-    pairs_.clear();
-    for (const Index k : placed_) {
-      if (is_finite(then[k])) {
-        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, limit_sq_});
-      }
-    }
-    if (frame_.in_image) {
-      widen_limits(then);
-    }
-  }
-
-  /// Where neighbours are missing or do not touch, a mean has more noise. Beside dots that slip too
-  /// far to count in it the limit stays: there a large slip is likely to be true. In space it stays
-  /// as well, as dots that leave a rolling object at the edge slip by little.
-  void widen_limits(const P* then) {
-    const S chance = S(2 * std::log(1 / options_.false_slip));
-    for (Pair& p : pairs_) {
-      S weights = S(0), squares = S(0);
-      around(p.k, [&](const S& weight, Index at) {
-        const S there = S(is_finite(then[at]) && is_finite(now_[at]) ? 1 : 0);
-        weights = weights + weight * there;
-        squares = squares + weight * weight * there;
-      });
-      const S variance = S(2) * sd_ * sd_ * squares / (weights * weights);
-      p.limit_sq = (std::max)(limit_sq_, S(chance * variance));
-    }
-  }
-
-  /// Compares the frame with its reference.
-  StickStatus answer(const P* then, Index age) {
-    collect(then);
-    if (detail::size_of(pairs_) < options_.min_dots || !find_object()) {
-      return StickStatus::too_few_dots;
-    }
-    const auto sticks = [&](const Pair& p) {
-      return value(squared_norm(p.mean)) < value(p.limit_sq);
-    };
-    const Index stick = std::count_if(pairs_.begin(), pairs_.end(), sticks);
-    const S ratio = detail::number<S>(stick) / detail::number<S>(detail::size_of(pairs_));
-    if (falls_back()) {
-      result_.back = {.stick_ratio = ratio, .reference_age = age};
-      return StickStatus::falls_back;
-    }
-    std::fill(states_.begin(), states_.end(), DotState::unknown);
-    std::fill(slips_.begin(), slips_.end(), no_slip());
-    P center = {S(0), S(0), S(0)};
-    for (const Pair& p : pairs_) {
-      states_[p.k] = sticks(p) ? DotState::stick : DotState::slip;
-      slips_[p.k] = p.mean;
-      center = sticks(p) ? center + p.now : center;
-    }
-    has_center_ = has_center_ || stick > 0;
-    center_ = stick > 0 ? center / detail::number<S>(stick) : center_;
-    result_.stick_ratio = ratio;
-    result_.furthest = sqrt_of(furthest_sq_);
-    result_.reference_age = age;
-    result_.motion = motion_;
-    result_.scale = scale_;
-    return StickStatus::updated;
-  }
-
   /// Finds the motion of the object from the dots around the last ones that stuck. No dot that the
   /// object drags can outrun it: if one has, the dots found so far only stand still together, and
   /// the search starts again there. If these stand still too and most dots slipped in the last
   /// answer, the object has moved on with the furthest dot. Weights by the averaged slip then
   /// reduce the influence of dots that slip a little. False if the dots do not determine a motion.
   bool find_object() {
-    const P from = has_center_ ? center_ : mean_of([](const Pair& p) { return p.now; });
-    std::fill(small_.begin(), small_.end(), SmallSlip{});
+    const auto now = [](const Pair& p) { return p.now; };
+    const P from = is_finite(center_) ? center_ : mean_of(now);
     bool found = follow(from);
     const Pair* const ahead = found ? outrunner() : nullptr;
     if (ahead != nullptr) {
-      found = follow(ahead->now);
-      if (has_hardly_moved()) {
-        if (result_.stick < result_.slip) {
-          motion_ = {};
-          motion_.translation_mm = ahead->now - ahead->then;
-          scale_ = S(1);
-          set_slips();
-          average();
-          return true;
-        }
-        found = follow(from);
+      move_with(*ahead);
+      found = gather();
+      if (has_hardly_moved() && result_.stick < result_.slip) {
+        move_with(*ahead);
+        average();
+        return true;
       }
+      found = has_hardly_moved() ? follow(from) : found;
     }
-    // where hardly a dot follows in the image, these weights would lead to dots that stand still
-    // together, as the scale fits them
-    const Index followers =
-        std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return follows(p); });
     // noise gives averaged slips a mean square of 4 gain^2; at twice that the weight is 1/4
-    const S quarter_sq = S(8 * gain() * gain()) * sd_ * sd_;
-    const bool refines = !frame_.in_image || followers >= min_followers;
-    for (int pass = 0; pass < 3 && refines; ++pass) {
+    const S quarter_sq = S(8 * gain * gain) * sd_ * sd_;
+    for (int pass = 0; pass < 3; ++pass) {
       average();
       for (Pair& p : pairs_) {
         p.weight = square(quarter_sq / (quarter_sq + squared_norm(p.mean)));
@@ -517,28 +485,37 @@ class StickRatio {
     average();
     return found;
   }
-  /// Within the limit: a slip has more noise than its mean over neighbours.
-  bool follows(const Pair& p) const { return value(squared_norm(p.slip)) < 2 * value(limit_sq_); }
-  /// Fits the motion to the dots around a place, then to those that follow it within the limit,
-  /// until their number no longer changes.
+  /// Fits the motion to the dots around a place, then to those that follow it.
   bool follow(const P& from) {
     using std::exp;
     const S wide_sq = value(pitch_sq_) > 0 ? S(1.4) * pitch_sq_ : S(1e12);
     for (Pair& p : pairs_) {
       p.weight = exp(-squared_norm(p.now - from) / wide_sq);
     }
-    bool found = fit();
-    for (Index pass = 0, before = -1, followers = 0; pass < 6 && followers != before; ++pass) {
-      before = pass > 0 ? followers : -1;
-      followers = 0;
+    return fit() && gather();
+  }
+  void move_with(const Pair& p) {
+    motion_ = {.translation_mm = p.now - p.then};
+    scale_ = S(1);
+    set_slips();
+  }
+  /// Extends the fit to the dots that follow within the limit, until their number no longer
+  /// changes. A slip has more noise than its mean over neighbours.
+  bool gather() {
+    bool found = true;
+    for (Index pass = 0, before = -1; pass < 6; ++pass) {
+      const auto follows = [&](const Pair& p) {
+        return value(squared_norm(p.slip)) < 2 * value(limit_sq_);
+      };
+      const Index followers = std::count_if(pairs_.begin(), pairs_.end(), follows);
+      if (followers < min_followers || followers == before) {
+        break;
+      }
       for (Pair& p : pairs_) {
         p.weight = S(follows(p) ? 1 : 0);
-        followers += follows(p) ? 1 : 0;
-      }
-      if (followers < min_followers) {
-        weigh_nearest();
       }
       found = found && fit();
+      before = followers;
     }
     return found;
   }
@@ -584,11 +561,11 @@ class StickRatio {
 
   /// Fits the motion to the weighted pairs and sets their slips. False: not determined.
   bool fit() {
+    const auto at = [&](Index k) -> const Pair& { return pairs_.data()[k]; };
     bool determined = true;
     if (frame_.in_image) {
       determined = fit_similar();
     } else {
-      const auto at = [&](Index k) -> const Pair& { return pairs_.data()[k]; };
       const auto rigid = fit_rigid<S>(
           detail::size_of(pairs_), [&](Index k) { return at(k).then; },
           [&](Index k) { return at(k).now; }, [&](Index k) { return at(k).weight; });
@@ -599,23 +576,11 @@ class StickRatio {
     set_slips();
     return determined;
   }
-  void set_slips() {
-    for (Pair& p : pairs_) {
-      const P slip = p.now - scale_ * motion_.rotation(p.then) - motion_.translation_mm;
-      p.slip = {slip.x, slip.y};
-    }
-  }
   /// Rotation about z, scale and shift of least squares.
   bool fit_similar() {
-    S mass = S(0), along = S(0), across = S(0), spread = S(0);
-    P then = {S(0), S(0), S(0)}, now = then;
-    for (const Pair& p : pairs_) {
-      mass = mass + p.weight;
-      then += p.weight * p.then;
-      now += p.weight * p.now;
-    }
-    then = then / mass;
-    now = now / mass;
+    const P then = mean_of([](const Pair& p) { return p.then; });
+    const P now = mean_of([](const Pair& p) { return p.now; });
+    S along = S(0), across = S(0), spread = S(0);
     for (const Pair& p : pairs_) {
       const P t = p.then - then, n = p.now - now;
       along = along + p.weight * dot(t, n);
@@ -630,19 +595,10 @@ class StickRatio {
     motion_.translation_mm = now - scale_ * motion_.rotation(then);
     return determined;
   }
-
-  /// Gaussian weights whose standard deviation is the slip of the dot that is min_followers-th.
-  void weigh_nearest() {
-    using std::exp;
-    sorted_.clear();
-    for (const Pair& p : pairs_) {
-      sorted_.push_back(squared_norm(p.slip));
-    }
-    const auto middle = sorted_.begin() + min_followers;
-    std::nth_element(sorted_.begin(), middle, sorted_.end());
-    const S wsq = value(*middle) > 0 ? *middle : S(1);
+  void set_slips() {
     for (Pair& p : pairs_) {
-      p.weight = exp(-squared_norm(p.slip) / (S(2) * wsq));
+      const P slip = p.now - scale_ * motion_.rotation(p.then) - motion_.translation_mm;
+      p.slip = {slip.x, slip.y};
     }
   }
 
@@ -650,22 +606,18 @@ class StickRatio {
   /// count, so that they do not affect the sticking dots beside them, and stay as they are.
   void average() {
     const S gate_sq = S(36) * limit_sq_;
+    std::fill(small_.begin(), small_.end(), P{S(0), S(0), S(0)});
     for (const Pair& p : pairs_) {
-      const bool counts = value(squared_norm(p.slip)) < value(gate_sq);
-      small_[p.k] = counts ? SmallSlip{p.slip, S(1)} : SmallSlip{};
+      if (value(squared_norm(p.slip)) < value(gate_sq)) {
+        small_[p.k] = {p.slip.x, p.slip.y, S(1)};  // z counts
+      }
     }
     for (Pair& p : pairs_) {
-      Point2<S> sum = {S(0), S(0)};
-      S weights = S(0);
-      around(p.k, [&](const S& weight, Index at) {
-        sum += weight * small_[at].slip;
-        weights = weights + weight * small_[at].counts;
-      });
-      p.mean = value(small_[p.k].counts) > 0 ? sum / weights : p.slip;
+      P sum = {S(0), S(0), S(0)};
+      around(p.k, [&](const S& weight, Index at) { sum += weight * small_[at]; });
+      p.mean = value(small_[p.k].z) > 0 ? Point2<S>{sum.x / sum.z, sum.y / sum.z} : p.slip;
     }
   }
-  /// Share of the noise of one dot that remains in its mean with eight neighbours.
-  static double gain() { return std::sqrt(36.0 + 4 * 4 + 4 * 1) / 18; }
 
   /// Whether the dots have moved back toward their free positions, to within 45 degrees; false if
   /// these are not known. Only x and y count, because the depth of a contact depends on its load.
@@ -686,34 +638,12 @@ class StickRatio {
   }
 
   void count_states() {
-    std::array<Index, 4> count = {};
-    for (Index k = 0; k < detail::size_of(now_); ++k) {
-      states_[k] = touches_[k] == 0 ? DotState::none : (std::max)(states_[k], DotState::unknown);
-      ++count[static_cast<std::size_t>(states_[k])];
-    }
-    result_.unknown = count[1];
-    result_.slip = count[2];
-    result_.stick = count[3];
-  }
-
-  /// Whether slipping dots cannot be distinguished from dots outside of the contact: the contact
-  /// reaches all four sides of the pattern and no dot was found outside of it, and more than a
-  /// tenth slip, where noise alone causes a hundredth.
-  bool lacks_outline() const {
-    bool all_touch = true, top = false, bottom = false, left = false, right = false;
-    for (Index i = 0; i < rows(); ++i) {
-      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
-        if (is_finite(frame_.found[k])) {
-          all_touch = all_touch && touches_[k] != 0;
-          top = top || i == 0;
-          bottom = bottom || i == rows() - 1;
-          left = left || j == 0;
-          right = right || j == cols() - 1;
-        }
-      }
-    }
-    return !options_.covers_pattern && 10 * result_.slip > result_.stick + result_.slip &&
-           all_touch && top && bottom && left && right;
+    const auto count = [&](DotState state) {
+      return static_cast<Index>(std::count(states_.begin(), states_.end(), state));
+    };
+    result_.unknown = count(DotState::unknown);
+    result_.slip = count(DotState::slip);
+    result_.stick = count(DotState::stick);
   }
 
   static Point2<S> no_slip() { return {not_a_number<S>(), not_a_number<S>()}; }
@@ -727,19 +657,17 @@ class StickRatio {
   Grid<P> now_;   // of it, the dots in contact and in place
   Grid<P> free_;  // their positions without contact
   detail::FrameNoise<S> measured_noise_;
-  Grid<std::uint8_t> touches_;
   Grid<DotState> states_;
   Grid<Point2<S>> slips_;
-  Grid<SmallSlip> small_;
-  std::vector<P> stored_;  // a ring of `capacity` frames
+  Grid<P> small_;          // slips that count in the mean of their neighbours
+  std::vector<P> stored_;  // a ring of frames
   Grid<std::int64_t> stored_at_;
   detail::ReservedVector<Index> placed_;
   detail::ReservedVector<Pair> pairs_;
-  detail::ReservedVector<S> sorted_;
-  Index touching_ = 0, newest_ = 0, stored_count_ = 0;
-  std::int64_t count_ = 0;  // of frames
-  bool has_center_ = false;
-  P center_ = {S(0), S(0), S(0)};  // of the dots that stuck in the last answer
+  Index touching_ = 0, crossed_ = 0, newest_ = 0, stored_count_ = 0;
+  bool has_outline_ = false;
+  std::int64_t count_ = 0;                 // of frames
+  P center_ = detail::missing_point<S>();  // of the dots that stuck in the last answer
   S pitch_sq_ = S(0), sd_ = S(0);
   S furthest_sq_ = S(0), limit_sq_ = S(0);  // d_max and the limit of this frame
   Pose<S> motion_ = {};                     // of the object since the reference
