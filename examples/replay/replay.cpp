@@ -160,9 +160,9 @@ void print_dots(const Chain& chain, const Writer& writer) {
   double lowest = std::numeric_limits<double>::infinity();
   int updated = 0;
   for (const FrameRow& row : writer.rows()) {
-    if (row.touch.stick.updated()) {
+    if (row.touch.slip.updated()) {
       ++updated;
-      lowest = (std::min)(lowest, row.touch.stick.stick_ratio);
+      lowest = (std::min)(lowest, row.touch.slip.stick_ratio);
     }
   }
   if (updated > 0) {

@@ -121,16 +121,16 @@ constexpr Column columns[] = {
     {"rotation_sd_rad", [](const Row& r) { return cell_of(r.touch.motion.rotation_sd_rad); }},
     {"slip_status",
      [](const Row& r) {
-       return Text(!r.has_dots               ? ""
-                   : r.touch.stick.updated() ? "ok"
-                                             : name_of(r.touch.stick.status));
+       return Text(!r.has_dots              ? ""
+                   : r.touch.slip.updated() ? "ok"
+                                            : name_of(r.touch.stick.status));
      }},
     {"dots_in_contact",
      [](const Row& r) { return whole_if(r.has_dots, r.touch.stick.dots_in_contact()); }},
-    {"stick_ratio", [](const Row& r) { return cell_if(r.has_dots, r.touch.stick.stick_ratio); }},
+    {"stick_ratio", [](const Row& r) { return cell_if(r.has_dots, r.touch.slip.stick_ratio); }},
     {"stick_ratio_updated",
-     [](const Row& r) { return whole_if(r.has_dots, r.touch.stick.updated()); }},
-    {"stick_ratio_sd", [](const Row& r) { return cell_if(r.has_dots, r.touch.stick.ratio_sd); }},
+     [](const Row& r) { return whole_if(r.has_dots, r.touch.slip.updated()); }},
+    {"stick_ratio_sd", [](const Row& r) { return cell_if(r.has_dots, r.touch.slip.ratio_sd); }},
     {"slip_evidence", evidence},
     {"shift_x_mm", [](const Row& r) { return cell_of(r.touch.shift.displacement.x); }},
     {"shift_y_mm", [](const Row& r) { return cell_of(r.touch.shift.displacement.y); }},

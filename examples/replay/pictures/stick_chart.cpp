@@ -56,8 +56,8 @@ void paint_ratio(Canvas& canvas, const Panel& panel, const std::vector<FrameRow>
   std::vector<Spot> kept;
   std::vector<Spot> updated;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto& stick = rows[k].touch.stick;
-    const double ratio = stick.stick_ratio;
+    const auto& slip = rows[k].touch.slip;
+    const double ratio = slip.stick_ratio;
     if (!std::isfinite(ratio)) {
       canvas.curve(kept, 1.6, kept_ink);
       kept.clear();
@@ -68,7 +68,7 @@ void paint_ratio(Canvas& canvas, const Panel& panel, const std::vector<FrameRow>
       kept.emplace_back(x, kept.back().y);
     }
     kept.emplace_back(x, panel.y(ratio));
-    if (stick.updated()) {
+    if (slip.updated()) {
       updated.push_back(kept.back());
     }
   }

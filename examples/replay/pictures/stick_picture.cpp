@@ -75,8 +75,8 @@ void paint_slip(Canvas& canvas, Spot from, Spot slip) {
 std::string words_of(const fingerpad::FingertipResult& touch) {
   using fingerpad::SlipEvidence;
   const auto& result = touch.stick;
-  const double ratio = result.stick_ratio;
-  if (result.updated()) {
+  const double ratio = touch.slip.stick_ratio;
+  if (touch.slip.updated()) {
     const bool by_friction =
         touch.slip.evidence == SlipEvidence::friction || touch.slip.evidence == SlipEvidence::both;
     const auto counted = result.stick + result.slip;

@@ -77,11 +77,6 @@ class Step : public FingertipStep {
     }
     out.has_rim = with_wrench_;
     out.touch = touch;
-    out.touch.stick.stick_ratio = touch.slip.stick_ratio;
-    out.touch.stick.ratio_sd = touch.slip.ratio_sd;
-    if (touch.slip.update == fingerpad::RatioUpdate::fresh) {
-      out.touch.stick.status = fingerpad::StickStatus::updated;
-    }
     return out;
   }
 

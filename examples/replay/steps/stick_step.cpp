@@ -3,6 +3,7 @@
 #include "replay/steps/stick_step.hpp"
 
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/slip/friction_limit.hpp"
 
 namespace replay {
 
@@ -26,8 +27,7 @@ FrameDots StickStep::operator()(const DotGrid& dots_px,
   }
   if (stick_) {
     touch.stick = (*stick_)(dots_px, frame.in_contact, time_s);
-    touch.slip.evidence =
-        touch.stick.ok() ? fingerpad::SlipEvidence::dots : fingerpad::SlipEvidence::none;
+    touch.slip = fingerpad::FrictionLimit<>()(fingerpad::ContactLoad<>{}, touch.stick);
     frame.states.create(dots_px.size());
     for (int i = 0; i < dots_px.rows; ++i) {
       for (int j = 0; j < dots_px.cols; ++j) {

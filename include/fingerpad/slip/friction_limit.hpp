@@ -174,6 +174,7 @@ struct [[nodiscard]] SlipResult {
   S margin = not_a_number<S>();    ///< 1 - L / limit; NaN if unknown
 
   bool ok() const { return is_finite(stick_ratio); }
+  bool updated() const { return update == RatioUpdate::fresh; }
 
   /// Whether a dot of this state moves with the object, so that it counts for the object's motion.
   /// A pose given during a slide is wrong from then on, but a frame without a pose costs only that
@@ -240,17 +241,19 @@ class FrictionLimit {
       result.status = FrictionLimitStatus::sliding;
       result.evidence = slides ? SlipEvidence::both : SlipEvidence::friction;
       result.stick_ratio = S(0);
-      result.ratio_sd = S(0.1);  // as found on simulated contacts
+      result.ratio_sd = zero_sd(known ? ratio : S(1), result.friction);
       result.update = RatioUpdate::fresh;
     }
     return result;
   }
 
   /// The same for the result of a stick ratio. Dots that fall back have two answers. An object that
-  /// sticks carries them only while its load falls, here by more than 2.5 times the noise of the
-  /// difference of two L, 3.0 % for forces known to 1.5 %: then the ratio is that of this frame.
-  /// Under an object that slides, the membrane springs back while the load stays: the last ratio
-  /// applies, and a first slide is learnt if less than half stuck in it.
+  /// sticks carries them only while its load falls below the highest since the reference by more
+  /// than noise does: then the ratio is that of this frame. Under an object that slides, the
+  /// membrane springs back while the load stays: the last ratio applies, and a first slide is
+  /// learnt if less than half stuck in it. The standard deviation grows where the dots slip more
+  /// than a friction of 0.5, or the limit, lets them under this load: a soft object moves its dots
+  /// as in partial slip.
   template <class Stick>
     requires requires(const Stick& seen) {
       seen.stick_ratio;
@@ -267,7 +270,7 @@ class FrictionLimit {
       if (falls_back) {
         age = seen.back_age;
         const S before = highest_of_last(age), now = friction_with(load);
-        carried = now < S(1 - 1.5 * (1 - options_.slide_fraction)) * before;
+        carried = now < (S(1) - fall_of_noise(age)) * before;
         const bool slides =
             S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
         ratio = carried ? S(seen.back_ratio) : slides ? S(0) : ratio;
@@ -277,7 +280,11 @@ class FrictionLimit {
     }
     SlipResult<S> result = (*this)(load, ratio, update);
     const bool slid = result.status == FrictionLimitStatus::sliding;
-    result.ratio_sd = slid ? result.ratio_sd : sd;
+    if (slid) {
+      result.ratio_sd = falls_back ? zero_sd(S(seen.back_ratio), result.friction) : result.ratio_sd;
+    } else {
+      result.ratio_sd = held_sd(result, sd);
+    }
     result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
     result.falls_back = falls_back;
@@ -306,6 +313,48 @@ class FrictionLimit {
   /// Largest factor by which the limit rises in a frame. An object that exceeds the limit by this
   /// factor while more than half of it sticks makes the limit unknown again.
   static constexpr double max_rise = 1.15;
+
+  /// Least friction of an object whose limit is not known.
+  static constexpr double least_friction = 0.5;
+
+  /// Standard deviation of the difference of two L, relative to L.
+  double noise() const {
+    return std::sqrt(2.0) * (std::max)(1 - options_.slide_fraction, 1e-3) / 2.4;
+  }
+  /// By how much noise alone lets L fall below the highest of `age` others in 1 of 160 frames: for
+  /// more of them, the threshold of a normal distribution is higher.
+  S fall_of_noise(Index age) const {
+    return S(noise() *
+             std::sqrt(square(2.5) + 2 * std::log(static_cast<double>((std::max)(age, Index(1))))));
+  }
+  /// Chance that the object slides. In slides L is spread about the limit by its noise, in holds it
+  /// is anywhere below the limit alike.
+  S chance_of_slide(const S& friction) const {
+    using std::exp;
+    const S below = (S(1) - friction / limit_) / S(noise());
+    const S slides =
+        S(S(0) < below ? exp(-below * below / S(2)) : S(1)) / S(noise() * 2.5066282746310002);
+    return slides / (S(1) + slides);
+  }
+  /// Of a ratio of 0 by friction, where the dots say `otherwise`. Less than least_stick sticks in a
+  /// slide, any share of it alike.
+  S zero_sd(const S& otherwise, const S& friction) const {
+    using std::sqrt;
+    return sqrt(S(square(least_stick) / 3) +
+                otherwise * otherwise * (S(1) - chance_of_slide(friction)));
+  }
+  /// Of a ratio by the dots with the standard deviation `sd`, where the object may slide, or where
+  /// friction allows more to stick.
+  S held_sd(const SlipResult<S>& r, const S& sd) const {
+    using std::sqrt;
+    if (!is_finite(r.friction) || !is_finite(sd)) {
+      return sd;
+    }
+    const S slides = r.stick_ratio * r.stick_ratio * chance_of_slide(r.friction);
+    const S allowed = S(1) - r.friction / S(least_friction) - r.stick_ratio;
+    const S more = is_finite(limit_) ? slides : S(0) < allowed ? allowed * allowed : S(0);
+    return sqrt(sd * sd + more);
+  }
 
   /// L; NaN if the normal force is below min_normal_n.
   S friction_with(const ContactLoad<S>& load) const {
