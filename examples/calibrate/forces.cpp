@@ -247,6 +247,7 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
   Outcome outcome;
   outcome.sections["rim"] = {
       {"membrane_modulus_n_per_mm", fit.modulus_n_per_mm},
+      {"membrane_modulus_sd_n_per_mm", fit.modulus_sd_n_per_mm},
       {"stress_free_inclination_rad", 2 * std::atan(fit.height_mm / noise.base_radius_mm)}};
   if (noise.finds_rubber) {
     outcome.sections["rim"]["mooney_share"] = fit.mooney_share;

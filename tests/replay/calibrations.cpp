@@ -182,6 +182,8 @@ TEST_CASE("The rubber that calibrate finds is the one that a recording is read w
   whole.sections["rim"] = found.sections["rim"];
   save(whole, file);
   CHECK(replay::read_sensor(file).rim->mooney_share == share);
+  CHECK(replay::read_sensor(file).rim->membrane_modulus_sd_n_per_mm ==
+        found.sections["rim"]["membrane_modulus_sd_n_per_mm"].get<double>());
   fs::remove(folder / "apex.csv");
   CHECK_THROWS_AS(calibrate::rim(folder, noise), replay::Failure);
   fs::remove_all(folder);

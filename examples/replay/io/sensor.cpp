@@ -176,12 +176,16 @@ Rim read_rim(const Section& root) {
       "rim",
       {{"side_dot_length_mm", "length to the side dots, which nothing here reads"},
        {"membrane_modulus_n_per_mm", "shear modulus times thickness of the membrane, N/mm"},
+       {"membrane_modulus_sd_n_per_mm", "its standard deviation, N/mm; 1 % if absent"},
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
        {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
        {"side_dots", "rows of side dots in the pictures, which nothing here reads"}});
   Rim rim;
   if (section.has("membrane_modulus_n_per_mm")) {
     rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
+  }
+  if (section.has("membrane_modulus_sd_n_per_mm")) {
+    rim.membrane_modulus_sd_n_per_mm = section.positive("membrane_modulus_sd_n_per_mm");
   }
   if (section.has("stress_free_inclination_rad")) {
     rim.stress_free_inclination_rad = section.positive("stress_free_inclination_rad");

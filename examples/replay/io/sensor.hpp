@@ -40,6 +40,7 @@ struct DotPattern {
 
 struct Rim {
   std::optional<double> membrane_modulus_n_per_mm;
+  std::optional<double> membrane_modulus_sd_n_per_mm;
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
   double mooney_share = 0;                            ///< C2 / (C1 + C2) of its rubber
 };

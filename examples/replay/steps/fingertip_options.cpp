@@ -88,6 +88,9 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
                            radius_mm * std::tan(*sensor.rim->stress_free_inclination_rad / 2),
                            sensor.rim->mooney_share};
     options.wrench->modulus_n_per_mm = *sensor.rim->membrane_modulus_n_per_mm;
+    if (const auto sd = sensor.rim->membrane_modulus_sd_n_per_mm) {
+      options.wrench->modulus_sd_share = (std::min)(*sd / options.wrench->modulus_n_per_mm, 1.0);
+    }
   }
   return settings;
 }

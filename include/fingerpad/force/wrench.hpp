@@ -7,11 +7,11 @@
 // base, is the whole force:
 //   F = mu t sum(share A) - p pi R^2 e_z,   M = mu t sum(share b cross A).
 // No depth, no colours, no region of contact: a hollow, soft or double object is as good as a
-// plate. The rim may be loose: a clamped sheet bends within about its thickness, which sets the
-// membrane off along its normal by an unknown amount.
+// plate.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -46,7 +46,7 @@ struct WrenchOptions {
   double modulus_sd_share = 0.01;    ///< what it is known to, in [0, 1]
   double pressure_sd_share = 0.002;  ///< noise of the gauge, of the pressure, in [0, 1]
   double reach_share = 0.53;  ///< dots are used so far inward, of the base radius, in (0, 0.7]
-  bool loose_rim = true;      ///< the rim may be set off along the membrane's normal
+  bool loose_rim = true;      ///< the rim may be set off along the normal, as a sheet is that bends
   double outlier_sd = 4;      ///< residuals beyond count linearly, > 0
   Index max_marks = 400;      ///< in [20, 100000]; what comes after is not used
 };
@@ -81,10 +81,11 @@ struct WrenchResult {
   WrenchStatus status = WrenchStatus::too_few_marks;
   Point3<double> force_n = detail::missing_point<double>();
   Point3<double> moment_n_mm = detail::missing_point<double>();
-  /// Of force and moment, N and N mm.
+  /// Of force and moment, N and N mm: by the residuals, the gauge, and what the modulus is known
+  /// to.
   Eigen::Matrix<double, 6, 6> covariance =
       Eigen::Matrix<double, 6, 6>::Constant(not_a_number<double>());
-  double misfit = 0;  ///< rms residual over sd_px, without outliers
+  double misfit = 0;  ///< residuals over sd_px, by their degrees of freedom, without outliers
   Index marks = 0;    ///< used
   bool ok() const { return status == WrenchStatus::ok; }
 };
@@ -126,27 +127,17 @@ class Wrench {
   double reach_mm() const { return annulus_.options().reach_mm; }
 
   /// Begins with the free pad at a pressure: what `place_in_free_picture` and the first fit
-  /// suppose. False if no free pad has this pressure.
+  /// suppose. False if no free pad has this pressure, or 2 % more.
   bool begin(double pressure_mpa) {
-    const double load = pressure_mpa / options_.modulus_n_per_mm;
-    const auto rim = is_finite(load) && load > 0 ? free_.rim(load) : std::nullopt;
-    begun_ = rim.has_value();
-    if (!begun_) {
-      return false;
+    const double load = pressure_mpa / options_.modulus_n_per_mm, more = 0.02;
+    begun_ = look_at_free(load * (1 + more));
+    const FreeRadii under_more = free_radius_mm_;
+    begun_ = begun_ && look_at_free(load);
+    for (std::size_t k = free_radius_mm_.size() - 1; begun_ && k-- > 0;) {
+      const auto arc = arc_of(under_more, free_radius_mm_[k]);
+      arc_by_load_mm_[k] = arc ? (*arc - arc_at(k)) / more : arc_by_load_mm_[k + 1];
     }
-    std::fill(centre_.begin(), centre_.end(), 0.0);
-    centre_[0] = rim->stretch * std::cos(rim->slope_rad);
-    centre_[2 * annulus_.terms()] = rim->stretch * std::sin(rim->slope_rad);
-    centre_.back() = load;
-    parameters_ = centre_;
-    annulus_.march(centre_, false);
-    for (std::size_t k = 0; k < free_radius_mm_.size(); ++k) {
-      const double arc =
-          reach_mm() * static_cast<double>(k) / static_cast<double>(free_radius_mm_.size() - 1);
-      const auto seen = on_plate(pixel_of(camera_, annulus_.at(annulus_.place(arc, 0))));
-      free_radius_mm_[k] = std::hypot(seen.x, seen.y);
-    }
-    return true;
+    return begun_;
   }
 
   /// The stress-free place of a dot that a picture of the free pad shows here, by inverting the
@@ -156,18 +147,9 @@ class Wrench {
     if (!begun_ || !is_plausible(px)) {
       return {};
     }
-    const auto seen = on_plate(px);
-    const double radius = std::hypot(seen.x, seen.y);
-    // an undercut wall is seen from its widest circle inward
-    const auto widest = std::max_element(free_radius_mm_.begin(), free_radius_mm_.end());
-    const auto inner = std::lower_bound(widest, free_radius_mm_.end(), radius, std::greater<>());
-    if (inner == widest || inner == free_radius_mm_.end()) {
-      return {};
-    }
-    const double share = (*(inner - 1) - radius) / (*(inner - 1) - *inner);
-    const double arc = (static_cast<double>(inner - free_radius_mm_.begin()) - 1 + share) *
-                       reach_mm() / static_cast<double>(free_radius_mm_.size() - 1);
-    return Mark{arc, std::atan2(seen.y, seen.x), px};
+    const auto seen = point_at(camera_, px.y, px.x, 0.0);
+    const auto arc = arc_of(free_radius_mm_, std::hypot(seen.x, seen.y));
+    return arc ? std::optional<Mark>({*arc, std::atan2(seen.y, seen.x), px}) : std::nullopt;
   }
 
   /// Force and moment from the marks of a frame, which nothing touches. O(marks x parameters^2);
@@ -183,7 +165,7 @@ class Wrench {
     for (const Mark& mark : marks) {
       if (static_cast<Index>(places_.size()) < options_.max_marks && mark.arc_mm > 0 &&
           mark.arc_mm < reach_mm() && is_plausible(mark.px) && mark.sd_px > 0) {
-        places_.push_back({annulus_.place(mark.arc_mm, mark.azimuth_rad), mark.px, mark.sd_px});
+        places_.push_back({annulus_.place(mark.arc_mm, mark.azimuth_rad), mark});
       }
     }
     result.marks = static_cast<Index>(places_.size());
@@ -201,21 +183,54 @@ class Wrench {
         return result;
       }
     }
-    result.misfit = misfit_;
+    result.misfit = std::sqrt(misfit_ / freedom());
     read_load(result);
-    result.status = misfit_ > 2.5 ? WrenchStatus::poor_fit : WrenchStatus::ok;
+    result.status = result.misfit > 2.5 ? WrenchStatus::poor_fit : WrenchStatus::ok;
     return result;
   }
 
  private:
   struct Seen {
     Annulus<double>::Place place;
-    Point2<double> px;
-    double sd_px;
+    Mark mark;
   };
 
-  Point3<double> on_plate(const Point2<double>& px) const {
-    return point_at(camera_, px.y, px.x, 0.0);
+  using FreeRadii = std::array<double, 81>;  // on the plate, over the arc
+
+  double arc_at(std::size_t k) const {
+    return reach_mm() * static_cast<double>(k) / static_cast<double>(free_radius_mm_.size() - 1);
+  }
+  /// Empty outside the picture of the free membrane within the reach.
+  std::optional<double> arc_of(const FreeRadii& radii_mm, double radius_mm) const {
+    // an undercut wall is seen from its widest circle inward
+    const auto widest = std::max_element(radii_mm.begin(), radii_mm.end());
+    const auto inner = std::lower_bound(widest, radii_mm.end(), radius_mm, std::greater<>());
+    if (inner == widest || inner == radii_mm.end()) {
+      return {};
+    }
+    const double share = (*(inner - 1) - radius_mm) / (*(inner - 1) - *inner);
+    const auto before = static_cast<std::size_t>(inner - radii_mm.begin() - 1);
+    return arc_at(before) + share * arc_at(1);
+  }
+
+  /// False if no free pad has this load.
+  bool look_at_free(double load) {
+    const auto rim = is_finite(load) && load > 0 ? free_.rim(load) : std::nullopt;
+    if (!rim) {
+      return false;
+    }
+    std::fill(centre_.begin(), centre_.end(), 0.0);
+    centre_[0] = rim->stretch * std::cos(rim->slope_rad);
+    centre_[2 * annulus_.terms()] = rim->stretch * std::sin(rim->slope_rad);
+    centre_.back() = load;
+    parameters_ = centre_;
+    annulus_.march(centre_, false);
+    for (std::size_t k = 0; k < free_radius_mm_.size(); ++k) {
+      const auto px = pixel_of(camera_, annulus_.at(annulus_.place(arc_at(k), 0)));
+      const auto seen = point_at(camera_, px.y, px.x, 0.0);
+      free_radius_mm_[k] = std::hypot(seen.x, seen.y);
+    }
+    return true;
   }
 
   /// Gauss and Newton's method with Huber's weights. The slopes are renewed while steps are large.
@@ -236,6 +251,7 @@ class Wrench {
       }
       largest *= scale;
       if (largest < 3e-5) {
+        solve(true);  // with the weights of these residuals
         return true;
       }
       with_slopes = largest > 0.004 || largest > step / 2;
@@ -246,7 +262,7 @@ class Wrench {
 
   /// Residuals of all marks over their sd, and their slopes.
   void look(bool with_slopes) {
-    double sum = 0;
+    misfit_ = 0;
     const auto count = static_cast<Eigen::Index>(annulus_.parameters());
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Seen& seen = places_[i];
@@ -260,10 +276,10 @@ class Wrench {
         continue;
       }
       const Point2<double> px = pixel_of(camera_, at);
-      residuals_[row] = (seen.px.x - px.x) / seen.sd_px;
-      residuals_[row + 1] = (seen.px.y - px.y) / seen.sd_px;
+      residuals_[row] = (seen.mark.px.x - px.x) / seen.mark.sd_px;
+      residuals_[row + 1] = (seen.mark.px.y - px.y) / seen.mark.sd_px;
       for (Eigen::Index k = row; k < row + 2; ++k) {  // one wrong label must not spoil the sum
-        sum += square((std::min)(std::fabs(residuals_[k]), options_.outlier_sd));
+        misfit_ += square((std::min)(std::fabs(residuals_[k]), options_.outlier_sd));
       }
       if (with_slopes) {
         constexpr double h = 1e-4;  // mm: pixel_of is smooth
@@ -272,7 +288,7 @@ class Wrench {
         for (int axis = 0; axis < 3; ++axis) {
           Point3<double> moved = at;
           (axis == 0 ? moved.x : axis == 1 ? moved.y : moved.z) += h;
-          const Point2<double> change = (pixel_of(camera_, moved) - px) / (h * seen.sd_px);
+          const Point2<double> change = (pixel_of(camera_, moved) - px) / (h * seen.mark.sd_px);
           const Eigen::Map<const Eigen::RowVectorXd> slope(
               &of_position_[static_cast<std::size_t>(axis) * annulus_.width()], count);
           slopes_.row(row) += change.x * slope;
@@ -280,32 +296,46 @@ class Wrench {
         }
       }
     }
-    misfit_ = std::sqrt(sum / static_cast<double>(2 * places_.size()));
   }
 
-  /// gradient_ becomes the step. The normal equations are those of the last slopes.
-  void solve(bool with_slopes) {
-    if (with_slopes) {
+  double weight_of(Eigen::Index row) const {
+    return (std::min)(options_.outlier_sd / std::fabs(residuals_[row]), 1.0);
+  }
+
+  /// gradient_ becomes the step. `anew`: the normal equations are those at hand, else the last.
+  void solve(bool anew) {
+    if (anew) {
       normal_.setZero();
     }
     gradient_.setZero();
     for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
-      const double size = std::fabs(residuals_[row]);
-      const double weight = size > options_.outlier_sd ? options_.outlier_sd / size : 1;
-      if (with_slopes) {
+      const double weight = weight_of(row);
+      if (anew) {
         normal_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_.row(row).transpose(), weight);
       }
       gradient_ += weight * residuals_[row] * slopes_.row(row).transpose();
     }
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      normal_(i, i) += with_slopes ? weight_[k] : 0;
+      normal_(i, i) += anew ? weight_[k] : 0;
       gradient_[i] += weight_[k] * (centre_[k] - parameters_[k]);
     }
-    if (with_slopes) {
+    if (anew) {
       solver_.compute(normal_);
     }
     solver_.solveInPlace(gradient_);
+  }
+
+  /// Residuals less the parameters that they determine, at least 1.
+  double freedom() {
+    auto count = static_cast<double>(2 * places_.size()) - static_cast<double>(weight_.size());
+    for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
+      gradient_.setZero();
+      gradient_[k] = 1;
+      solver_.matrixL().solveInPlace(gradient_);
+      count += weight_[static_cast<std::size_t>(k)] * gradient_.squaredNorm();
+    }
+    return (std::max)(count, 1.0);
   }
 
   void read_load(WrenchResult& result) {
@@ -324,13 +354,37 @@ class Wrench {
       auto column = transposed_.col(k);
       solver_.matrixL().solveInPlace(column);
     }
-    const double spread = square(modulus * misfit_);
     result.covariance = transposed_.transpose().lazyProduct(transposed_);
-    result.covariance *= spread;
-    const Eigen::Matrix<double, 6, 1> all(result.force_n.x, result.force_n.y, result.force_n.z,
-                                          result.moment_n_mm.x, result.moment_n_mm.y,
-                                          result.moment_n_mm.z);
-    result.covariance += square(options_.modulus_sd_share) * all * all.transpose();
+    result.covariance *= square(modulus * result.misfit);
+    Eigen::Matrix<double, 6, 1> by_modulus(result.force_n.x, result.force_n.y, result.force_n.z,
+                                           result.moment_n_mm.x, result.moment_n_mm.y,
+                                           result.moment_n_mm.z);
+    turn_to_modulus();
+    by_modulus += modulus * slope.lazyProduct(gradient_);
+    result.covariance += square(options_.modulus_sd_share) * by_modulus * by_modulus.transpose();
+  }
+
+  /// gradient_ becomes the change of the parameters with ln(mu t): of the load, of the places that
+  /// the free picture gave, and by the fit to both.
+  void turn_to_modulus() {
+    const auto last = gradient_.size() - 1;
+    const double load = parameters_.back();
+    gradient_.setZero();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Mark& mark = places_[i].mark;
+      const double h = 0.01;
+      const auto nearest = static_cast<std::size_t>(mark.arc_mm / arc_at(1) + 0.5);
+      const double arc = (std::clamp)(mark.arc_mm - h * arc_by_load_mm_[nearest], 0.0, reach_mm());
+      const auto seen = pixel_of(camera_, annulus_.at(annulus_.place(arc, mark.azimuth_rad)));
+      const auto row = static_cast<Eigen::Index>(2 * i);
+      for (Eigen::Index k = row; k < row + 2; ++k) {
+        const double off = k == row ? seen.x - mark.px.x : seen.y - mark.px.y;
+        const double change = (off / mark.sd_px + residuals_[k]) / h - load * slopes_(k, last);
+        gradient_ -= weight_of(k) * change * slopes_.row(k).transpose();
+      }
+    }
+    solver_.solveInPlace(gradient_);
+    gradient_[last] -= load;
   }
 
   CameraType camera_;
@@ -339,13 +393,13 @@ class Wrench {
   Annulus<double> annulus_;
   bool begun_ = false;
   std::vector<double> parameters_, centre_, weight_, of_position_, of_load_;
-  std::vector<double> free_radius_mm_ = std::vector<double>(81);  // on the plate, over the arc
+  FreeRadii free_radius_mm_ = {}, arc_by_load_mm_ = {};  // the latter with ln of the load
   detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd normal_, transposed_;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes_;
   Eigen::VectorXd gradient_, residuals_;
   Eigen::LLT<Eigen::MatrixXd> solver_;
-  double misfit_ = 0;
+  double misfit_ = 0;  // sum of squares
 };
 
 }  // namespace v0

@@ -28,7 +28,7 @@ inline namespace v0 {
 struct AnnulusOptions {
   double reach_mm = 10;        ///< stress-free arc from the rim, > 0
   Index azimuths = 24;         ///< meridians, in [12, 360]
-  Index steps = 4;             ///< of Runge and Kutta's method, in [1, 100]
+  Index steps = 5;             ///< of Runge and Kutta's method, in [1, 100]
   Index harmonics = 5;         ///< of the derivative at the rim, in [1, 30]
   Index offset_harmonics = 5;  ///< of the offset of the rim, in [-1, 30]; -1: none
 };
