@@ -46,13 +46,30 @@ cv::Mat in_grey_levels(const cv::Mat& picture) {
   return grey;
 }
 
+/// A file of the free pad, which sensor.json names from the recording's folder until `calibrate
+/// all` or a person moves it, then from its own.
+Path reference_file(const Path& recording, const Path& sensor_file, const std::string& name) {
+  const Path in_recording = recording / name;
+  return std::filesystem::exists(in_recording) ? in_recording : sensor_file.parent_path() / name;
+}
+
+/// Reads the picture of the free pad and its depth.
+void read_reference(const Path& recording,
+                    const Path& sensor_file,
+                    const replay::Sensor& sensor,
+                    cv::Mat& reference,
+                    DepthMap& free_mm) {
+  reference = replay::read_colour_image(
+      reference_file(recording, sensor_file, sensor.reference_frame), sensor.pictures);
+  free_mm =
+      replay::read_depth_image(reference_file(recording, sensor_file, sensor.reference_depth));
+}
+
 KnownFrames read_known(const Path& recording,
                        const Path& sensor_file,
                        const std::vector<std::string>& sections) {
   KnownFrames known{known_sensor(sensor_file, sections), {}, {}, {}, {}};
-  known.reference =
-      replay::read_colour_image(recording / known.sensor.reference_frame, known.sensor.pictures);
-  known.free_mm = replay::read_depth_image(recording / known.sensor.reference_depth);
+  read_reference(recording, sensor_file, known.sensor, known.reference, known.free_mm);
   known.frames = read_pictures(recording / "frames", known.sensor.pictures);
   if (known.frames.front().size() != known.reference.size() ||
       known.free_mm.size() != known.reference.size()) {
@@ -183,6 +200,20 @@ class DepthMeter {
   fingerpad::DepthEstimator<float> estimate_;
 };
 
+/// Root mean square of what depths of the free pad differ from its shape, at heights that an object
+/// touches: above a third of the apex.
+double depth_noise_mm(const std::vector<DepthMap>& depths_mm,
+                      const DepthMap& free_mm,
+                      double apex_mm) {
+  double sum_sq = 0, count = 0;
+  for (const DepthMap& depth_mm : depths_mm) {
+    const cv::Mat used = (depth_mm == depth_mm) & (free_mm > apex_mm / 3);
+    sum_sq += std::pow(cv::norm(depth_mm, free_mm, cv::NORM_L2, used), 2);
+    count += cv::countNonZero(used);
+  }
+  return std::sqrt(sum_sq / count);
+}
+
 }  // namespace
 
 Outcome absorption(const Path& recording, const Path& sensor_file) {
@@ -283,31 +314,36 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
 
 Outcome contact(const Path& recording, const Path& sensor_file) {
   replay::Sensor sensor = known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
-  const cv::Mat reference =
-      replay::read_colour_image(recording / sensor.reference_frame, sensor.pictures);
-  const DepthMap free_mm = replay::read_depth_image(recording / sensor.reference_depth);
+  cv::Mat reference;
+  DepthMap free_mm;
+  read_reference(recording, sensor_file, sensor, reference, free_mm);
   const std::vector<cv::Mat> frames = read_pictures(recording / "free", sensor.pictures);
   for (const cv::Mat& frame : frames) {
     if (frame.size() != reference.size()) {
       replay::fail(recording / "free", "the frames must have the size of the reference");
     }
   }
-  // noise may set the threshold, and not the edge: then a wider window averages it away
-  DepthMap last;
+  // Noise may set the threshold, and not the edge: then a wider window and a wider ring average it
+  // away. The ring takes the larger share, since a window biases depth where a small object
+  // presses.
+  const int first_px = window_px(sensor);
+  replay::Contact found;
+  std::vector<DepthMap> depths_mm;
   fingerpad::ThresholdFit<double> pad;
-  const int most_px = 2 * window_px(sensor);
-  for (int width = window_px(sensor); width <= most_px; width += width / 8 * 2) {
+  for (int width = first_px; width <= 2 * first_px; width += width / 8 * 2) {
     sensor.smoothing_px = width;
+    fingerpad::CurvatureRing ring;
+    ring.radius_px *= std::pow(double(width) / first_px, 2);
+    found.ring_px = ring.radius_px;
     DepthMeter meter(sensor, reference, free_mm);
-    std::vector<DepthMap> depths_mm;
+    depths_mm.clear();
     for (const cv::Mat& frame : frames) {
       depths_mm.push_back(meter(frame));
     }
-    last = depths_mm.back();
     try {
-      pad = fit_contact_threshold(sensor.camera, depths_mm);
+      pad = fit_contact_threshold(sensor.camera, depths_mm, ring);
     } catch (const fingerpad::parameter_error&) {  // all noise
-      if (width + width / 8 * 2 > most_px) {
+      if (width + width / 8 * 2 > 2 * first_px) {
         throw;
       }
       continue;
@@ -316,9 +352,13 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
       break;
     }
   }
+  const DepthMap& last = depths_mm.back();
+  found.depth_noise_mm = depth_noise_mm(depths_mm, free_mm, sensor.pad.apex_height_mm);
   Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
   report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
                        {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
+                       {"ring_px", found.ring_px},
+                       {"depth_noise_mm", *found.depth_noise_mm},
                        {"smoothing_px", double(*sensor.smoothing_px)}};
   report.doubt(!pad.ok(), text_of(pad));
   report.doubt(2 * cv::countNonZero(last == last) < cv::countNonZero(free_mm == free_mm),
@@ -328,7 +368,9 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
                "the threshold is set by the noise instead of the edge: use more light");
   Outcome outcome;
-  outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm}};
+  outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm},
+                                 {"ring_px", found.ring_px},
+                                 {"depth_noise_mm", *found.depth_noise_mm}};
   outcome.sections["smoothing_px"] = *sensor.smoothing_px;
   Plot plot{"column on the middle row [px]", "depth of the free pad [mm]", {}};
   const int row = reference.rows / 2;

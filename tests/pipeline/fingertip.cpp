@@ -537,7 +537,10 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   const auto untouched = [&](double mpa) {
     return tip(free.red, free.green, in.dots_px, mpa).wrench;
   };
-  CHECK(touch_of(tip, in).wrench.status == fingerpad::WrenchStatus::too_few_marks);
+  const auto first = touch_of(tip, in);
+  CHECK(first.wrench.status == fingerpad::WrenchStatus::too_few_marks);
+  REQUIRE(first.contact.in_contact());
+  CHECK_FALSE(first.contact_in_doubt);
   CHECK(untouched(test::nan).status == fingerpad::WrenchStatus::no_pressure);
   // whatever the dots show in a free frame, it is no force
   const auto none = untouched(0.016);
@@ -545,6 +548,12 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   CHECK(none.marks >= 20);
   CHECK(std::fabs(none.force_n.z) < 0.02);
   CHECK(std::hypot(none.force_n.x, none.force_n.y) < 0.01);
+  // the picture shows a contact, but the dots near the rim feel no press
+  const auto unfelt = tip(in.red, in.green, in.dots_px, 0.016);
+  CAPTURE(name_of(unfelt.wrench.status), unfelt.wrench.marks, in.pressure_mpa);
+  REQUIRE(unfelt.wrench.ok());
+  CHECK(unfelt.contact.in_contact());
+  CHECK(unfelt.contact_in_doubt);
 }
 
 TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothing touches",

@@ -65,7 +65,8 @@ Outcome camera_and_more() {
         {"max_depth_mm", 12}}},
       {"pad", {{"base_radius_mm", 18}, {"apex_height_mm", 40.0 / 3}}},
       {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
-      {"contact", {{"threshold_per_mm", 0.1 / 7}}},
+      {"contact",
+       {{"threshold_per_mm", 0.1 / 7}, {"ring_px", 100.0 / 3}, {"depth_noise_mm", 0.1 / 3}}},
       {"stick", {{"noise_px", 1.0 / 7}}},
       {"rim", {{"membrane_modulus_n_per_mm", 1.0 / 3}, {"mooney_share", 0.1 / 3}}},
       {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}},
@@ -121,7 +122,10 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.camera.pitch_mm == 0.1 / 3);
   CHECK(sensor.absorption.c_red_per_mm == 0.1 / 3);
   CHECK(sensor.pad.apex_height_mm == 40.0 / 3);
-  CHECK(sensor.contact_threshold_per_mm == 0.1 / 7);
+  REQUIRE(sensor.contact);
+  CHECK(sensor.contact->threshold_per_mm == 0.1 / 7);
+  CHECK(sensor.contact->ring_px == 100.0 / 3);
+  CHECK(sensor.contact->depth_noise_mm == 0.1 / 3);
   CHECK(sensor.stick.noise == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
   CHECK(sensor.rim->mooney_share == 0.1 / 3);

@@ -206,7 +206,7 @@ TEST_CASE("a finger of one's own: one command takes all that there is", "[own]")
   CHECK(sensor.camera.plate_distance_mm == Approx(50).margin(0.5));
   CHECK(sensor.pad.apex_height_mm == Approx(true_meridian().front().y).margin(0.02));
   CHECK(sensor.light.has_value());
-  CHECK(sensor.contact_threshold_per_mm.has_value());
+  CHECK(sensor.contact.has_value());
   // a recording of its use needs no sensor.json of its own
   const fs::path use = finger / "use";
   fs::create_directories(use / "frames");

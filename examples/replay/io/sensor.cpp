@@ -251,6 +251,23 @@ ShearLookUp read_shear(const Section& force) {
   return look_up;
 }
 
+Contact read_contact(const Section& root) {
+  const Section section = root.section(
+      "contact", {{"threshold_per_mm", "curvature below which a pixel is in contact, 1/mm"},
+                  {"ring_px", "radius of the ring of pixels from which the curvature is taken, px"},
+                  {"depth_noise_mm", "standard deviation of a depth, mm"}});
+  Contact contact{.threshold_per_mm = section.positive("threshold_per_mm")};
+  if (section.has("ring_px")) {
+    contact.ring_px = section.positive("ring_px");
+  }
+  if (section.has("depth_noise_mm")) {
+    contact.depth_noise_mm = section.positive("depth_noise_mm");
+  }
+  section.check(
+      [&] { fingerpad::require(fingerpad::CurvatureRing{.radius_px = contact.ring_px}); });
+  return contact;
+}
+
 ForceLookUp read_force(const Section& root) {
   const Section section = root.section(
       "force", {{"by_area", "curve of normal force against contact area"},
@@ -323,10 +340,7 @@ void read_depth(const std::filesystem::path& file, const Section& root, Sensor& 
     sensor.force = read_force(root);
   }
   if (root.has("contact")) {
-    sensor.contact_threshold_per_mm =
-        root.section("contact",
-                     {{"threshold_per_mm", "curvature below which a pixel is in contact, 1/mm"}})
-            .positive("threshold_per_mm");
+    sensor.contact = read_contact(root);
   }
   if (root.has("rim")) {
     sensor.rim = read_rim(root);

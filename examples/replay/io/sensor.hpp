@@ -12,6 +12,7 @@
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/force/look_up.hpp"
+#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "replay/io/images.hpp"
@@ -61,6 +62,13 @@ struct ForceLookUp {
   std::optional<ShearLookUp> shear;
 };
 
+/// What `calibrate contact` found in frames of the free pad.
+struct Contact {
+  double threshold_per_mm = 0;
+  double ring_px = fingerpad::CurvatureRing().radius_px;
+  std::optional<double> depth_noise_mm = {};  ///< standard deviation of a smoothed depth
+};
+
 struct NeighbourLight {
   int radius_px = 0;
   double m0_mm_per_rad = 0;
@@ -79,10 +87,10 @@ struct Sensor {
   std::optional<std::string> video;  ///< instead of the folder frames/
   std::optional<int> smoothing_px;   ///< window width, odd; empty: replay does not smooth
   std::optional<Dots> dots;
-  bool dots_only = false;         ///< if true, camera, absorption, pad and dots are empty
-  DotPattern pattern;             ///< only of a dots-only recording
-  fingerpad::StickOptions stick;  ///< lengths in px
-  std::optional<double> contact_threshold_per_mm;  ///< empty: from the free pad
+  bool dots_only = false;          ///< if true, camera, absorption, pad and dots are empty
+  DotPattern pattern;              ///< only of a dots-only recording
+  fingerpad::StickOptions stick;   ///< lengths in px
+  std::optional<Contact> contact;  ///< empty: threshold from the free pad
   std::optional<ForceLookUp> force;
   std::optional<Rim> rim;
   std::optional<NeighbourLight> neighbour_light;

@@ -66,8 +66,15 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
       FingertipOptions{sensor.camera, sensor.absorption, reference_of(recording)});
   FingertipOptions& options = settings.options;
   options.smoothing_px = sensor.smoothing_px.value_or(options.smoothing_px);
-  const auto& calibrated = sensor.contact_threshold_per_mm;
-  options.contact.threshold_per_mm = calibrated ? *calibrated : threshold_of_shape(recording);
+  if (sensor.contact) {
+    options.contact.threshold_per_mm = sensor.contact->threshold_per_mm;
+    options.contact.ring.radius_px = sensor.contact->ring_px;
+    // at least the default: the free pad does not show the error at the edge of a contact
+    options.dot_depth_noise_mm =
+        std::max(options.dot_depth_noise_mm, sensor.contact->depth_noise_mm.value_or(0));
+  } else {
+    options.contact.threshold_per_mm = threshold_of_shape(recording);
+  }
   options.contact.free_apex_mm = sensor.pad.apex_height_mm;
   SpaceGrid dots_mm(free_dots_px.size());
   (void)fingerpad::spatial_dots(sensor.camera, free_dots_px, shape_mm, dots_mm);

@@ -125,7 +125,7 @@ std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
     options.neighbour_light = light;
     options.free_depth_mm = fingerpad::as_view(std::as_const(free_depth_mm));
   }
-  if (!sensor.contact_threshold_per_mm && recording.free_frames.size() > 0) {
+  if (!sensor.contact && recording.free_frames.size() > 0) {
     options.contact.threshold_per_mm = contact_threshold_of(recording, options);
   }
   options.flat_area.emplace();  // written without a curve too, so that one can be fitted

@@ -97,7 +97,7 @@ class Fingertip {
     if (dots_) {
       dots_->conclude(touch);
     }
-    touch.status = judge(touch);
+    touch.status = judge(touch, pressure_mpa);
     return touch;
   }
 
@@ -179,19 +179,24 @@ class Fingertip {
     }
   }
 
-  /// An edge that may lie so far off that a quarter of the area is in doubt, or no region although
-  /// the rim tells of a press, beyond four standard deviations.
-  static bool doubts_contact(const FingertipResult& touch) {
+  /// An edge that may lie so far off that a quarter of the area is in doubt; or what the rim says,
+  /// which has not seen the contact: a press beyond four standard deviations where no region is
+  /// found, or an area on which the pressure alone exceeds the press by a quarter. On an object
+  /// that is rigid and not hollow, the membrane's tension only adds to the pressure.
+  static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
     const ContactResult& contact = touch.contact;
-    return contact.in_contact()
-               ? 4 * contact.area_sd_mm2 > contact.area_mm2
-               : touch.wrench.ok() &&
-                     -touch.wrench.force_n.z > 4 * std::sqrt(touch.wrench.covariance(2, 2));
+    const double press_n = -touch.wrench.force_n.z;
+    const double sd_n = std::sqrt(touch.wrench.covariance(2, 2));
+    return contact.in_contact() ? 4 * contact.area_sd_mm2 > contact.area_mm2 ||
+                                      (touch.wrench.ok() && pressure_mpa * contact.area_mm2 >
+                                                                1.25 * (press_n + 2 * sd_n))
+                                : touch.wrench.ok() && press_n > 4 * sd_n;
   }
 
-  FingertipStatus judge(FingertipResult& touch) const {
+  FingertipStatus judge(FingertipResult& touch, double pressure_mpa) const {
     touch.depth_in_doubt = !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok;
-    touch.contact_in_doubt = find_contact_ && (!touch.contact.ok() || doubts_contact(touch));
+    touch.contact_in_doubt =
+        find_contact_ && (!touch.contact.ok() || doubts_contact(touch, pressure_mpa));
     const bool sure = !touch.depth_in_doubt && !touch.contact_in_doubt;
     if (sure && find_contact_ && !touch.contact.in_contact()) {
       return FingertipStatus::no_contact;
