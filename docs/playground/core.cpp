@@ -167,11 +167,10 @@ class VirtualPad {
     // c_1 S + c_2 S^2 through the first and the last
     const double low = force_n[0] / area_mm2[0], high = force_n[2] / area_mm2[2];
     const double c2 = (high - low) / (area_mm2[2] - area_mm2[0]), c1 = low - c2 * area_mm2[0];
-    o.force_of_area.emplace(fingerpad::ForceCurve<>{{0, c1, c2}, 3, 500, 0, 0, 0.05});
+    o.force_of_area.emplace(fingerpad::ForceCurve<>{{0, c1, c2}, 3, 500, 0.05});
     // the lever of a torque is 2/3 of the contact's radius
     const double turning = stiffness * 4 / (9 * pi) * 100;
-    o.shear.emplace(
-        fingerpad::ShearMap<>{100, {{stiffness, 0, 0, 0}, 0, 5}, {{turning, 0, 0, 0}, 1, 2}});
+    o.shear.emplace(fingerpad::ShearMap<>{100, {stiffness, 0, 5}, {turning, 1, 2}});
   }
 
   void move(const Object& object, double time_s) {

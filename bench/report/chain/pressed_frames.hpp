@@ -84,7 +84,7 @@ class PressedFrames {
     f.contact.ring.radius_px = 25 * scale;
     // by area: the plate's pressure on it; by depth: a line between two of the frames
     constexpr double residual_n = 0.1;
-    f.force_of_area.emplace(fingerpad::ForceCurve<>{{0, pressure_mpa}, 50, 400, 0, 0, residual_n});
+    f.force_of_area.emplace(fingerpad::ForceCurve<>{{0, pressure_mpa}, 50, 400, residual_n});
     const auto of_depth = [&](double contact_mm) {
       test::RoundPad<test::FilmSide> pad;
       pad.contact_mm = contact_mm;
