@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "replay/io/failure.hpp"
+#include "replay/io/images.hpp"
 #include "replay/median.hpp"
 
 namespace replay {
@@ -86,6 +87,8 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.dots = std::move(seen.dots);
   scene.touch = seen.touch;
   scene.has_depth = true;
+  const cv::Mat_<uchar> pad(recording_.reference_depth > 0);
+  scene.compressed = step_between_blocks(scene.image, pad) > compressed_step;
   scene.has_rim = seen.has_rim;
   scene.has_curves = recording_.sensor.force.has_value();
   describe_depth(scene);

@@ -259,6 +259,7 @@ int run(const Options& options) {
     gel.emplace(recording, options, chain.dots(), writer.output(), total);
   }
   recording.frames.seek(range.first);
+  DamagedFrames damaged;
   {
     const Progress progress(total);
     for (int done = 0; done < total; ++done) {
@@ -266,7 +267,10 @@ int run(const Options& options) {
       if (is_interrupted()) {
         return 130;
       }
-      const cv::Mat image = next_frame(recording.frames, recording.reference.size());
+      const cv::Mat image = next_whole_frame(recording.frames, recording.reference.size(), damaged);
+      if (image.empty()) {
+        continue;
+      }
       Scene scene = chain(range.first + done, image);
       if (gel) {
         (*gel)(scene.frame, scene.time_s, image, scene.dots.dots_px);
@@ -274,11 +278,17 @@ int run(const Options& options) {
       writer(std::move(scene));
     }
   }
+  if (static_cast<int>(damaged.size()) == total) {
+    throw Failure(damaged.begin()->second);
+  }
   if (gel) {
     gel->finish();
   }
   writer.finish();
   print_summary(chain, writer, recording, options);
+  for (const auto& [frame, why] : damaged) {
+    std::printf("left out     frame %d: %s\n", frame, why.c_str());
+  }
   if (gel) {
     gel->print_summary();
   }

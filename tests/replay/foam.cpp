@@ -428,9 +428,9 @@ TEST_CASE("each key of sensor.json reaches the features or the rules") {
 TEST_CASE("readings that saturate or are stuck are left out") {
   Taxels taxels = taxels_of(rows, cols, samples, creeping);
   for (int k = 20; k < samples; ++k) {
-    taxels.cell(k, "r2_c1") = "4095";
+    taxels.cell(k, "r2_c1") = "4000";
   }
-  const auto saturated = run(taxels, with_foam(R"("saturated_at": 4095)"));
+  const auto saturated = run(taxels, with_foam(R"("saturated_at": 4000)"));
   CHECK(saturated[19].at("taxels_left_out") == "0");
   CHECK(saturated[20].at("taxels_left_out") == "1");
   CHECK(first_alarm(saturated) >= first_begins);
@@ -605,7 +605,7 @@ TEST_CASE("a table that is none of taxels is refused with the column's name") {
       Fault{"frame,time_s,r99999999999999999999_c0\n0,0,1\n", "unknown column 'r9999999"},
       Fault{"frame,time_s,r-1_c0\n0,0,1\n", "unknown column 'r-1_c0'"},
       Fault{"frame,time_s,,r0_c0\n0,0,,1\n", "unknown column ''"},
-      Fault{"frame;time_s;r0_c0\n0;0;1\n", "unknown column 'frame;time_s;r0_c0'"},
+      Fault{"frame;time_s;r0_c0\n0;0;1\n", "line 1: the values are separated by ';'"},
       Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,2,3\n",
             "line 3: has 4 values, but the header has only 3"},
       Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,two\n", "line 3: r0_c0 'two' is not a number"},

@@ -24,10 +24,12 @@ import os
 import random
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
 import time
+import zlib
 from pathlib import Path
 
 BROKEN = {
@@ -66,6 +68,19 @@ def write_press(folder, press, frames, with_dots):
     (folder / "sensor.json").write_text(json.dumps(sensor))
 
 
+def png_of_one_pixel():
+    """A picture of another size than the reference; one that is damaged would be left out."""
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0)
+    pixel = zlib.compress(bytes(4))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        chunk(*part) for part in ((b"IHDR", head), (b"IDAT", pixel), (b"IEND", b""))
+    )
+
+
 def write_recordings(folder, press, count):
     """`count` good recordings and the broken ones; one has a comma and a quote, one is nested."""
     chance = random.Random(count)
@@ -79,7 +94,7 @@ def write_recordings(folder, press, count):
     (folder / "broken_json/sensor.json").write_text('{ "camera": ')
     write_press(folder / "broken_frame", press, [1, 2, 3], False)
     (folder / "broken_frame/frames/000001.png").unlink()
-    (folder / "broken_frame/frames/000001.png").write_text("no picture")
+    (folder / "broken_frame/frames/000001.png").write_bytes(png_of_one_pixel())
     write_press(folder / "broken_no_frames", press, [1], False)
     shutil.rmtree(folder / "broken_no_frames/frames")
     write_foam(folder / "broken_taxels", 3)

@@ -62,7 +62,7 @@ ASAN_OPTIONS=detect_leaks=0 \
   refuses 1 "locked" "$recording" --out "$work/locked/out"; }
 
 head -c 50000 "$recording/frames/000003.png" >"$broken/frames/000003.png"
-refuses 1 "frames/000003.png: cannot be read" "$broken" --out "$work/out"
+refuses 1 "frames/000003.png: cannot be read" "$broken" --out "$work/out" --frames 3:4
 # 30000 x 30000 px in 110 kB, which would be decoded to 0.9 GB.
 python3 - "$broken/frames/000003.png" <<'END'
 import struct, sys, zlib
@@ -73,7 +73,7 @@ rows = zlib.compress(bytes((1 + 3750) * 30000))
 with open(sys.argv[1], "wb") as file:
     file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
 END
-refuses 1 "frames/000003.png: cannot be read as an image" "$broken" --out "$work/out"
+refuses 1 "frames/000003.png: cannot be read as an image" "$broken" --out "$work/out" --frames 3:4
 rm -r "$broken/frames" && mkdir "$broken/frames"
 refuses 1 "frames: holds no frames" "$broken" --out "$work/out"
 sed 's/"pitch_mm": 0.08$/"pitch": 0.08/' "$recording/sensor.json" >"$broken/sensor.json"

@@ -268,13 +268,11 @@ TEST_CASE("files that cannot be used are refused with their name") {
     fs::remove_all(work.recording() / "frames");
     CHECK(work.complaint().find("frames: there is no such folder") != std::string::npos);
   }
-  SECTION("a frame cut short") {
-    fs::resize_file(work.recording() / "frames" / "000001.png", 60000);
-    CHECK(work.complaint().find("frames/000001.png: cannot be read") != std::string::npos);
-  }
-  SECTION("a frame that is no image") {
-    work.write("frames/000002.png", "not an image");
-    CHECK(work.complaint().find("frames/000002.png: cannot be read") != std::string::npos);
+  SECTION("frames that are no images") {
+    for (const char* file : {"frames/000000.png", "frames/000001.png", "frames/000002.png"}) {
+      work.write(file, "not an image");
+    }
+    CHECK(work.complaint().find("frames/000000.png: cannot be read") != std::string::npos);
   }
   SECTION("a frame of another size") {
     cv::imwrite((work.recording() / "frames" / "000001.png").string(),

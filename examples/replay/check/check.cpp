@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "replay/check/parts.hpp"
+#include "replay/gel/free_pad.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/steps/fingertip_options.hpp"
 
@@ -27,7 +28,8 @@ void note_missing(const Recording& recording, Findings& findings) {
     }
     return;
   }
-  if (const std::string lacking = lacking_for_wrench(recording); !lacking.empty()) {
+  if (const std::string lacking = lacking_for_wrench(recording);
+      !lacking.empty() && fault_of_pressure(recording).empty()) {
     note("six-axis force", lacking, "Add it if you need this force.");
   }
   if (!recording.sensor.force) {
@@ -59,6 +61,10 @@ void check_camera_recording(const std::filesystem::path& folder,
   }
   check_light(recording, findings);
   check_dots(folder, recording, findings);
+  if (recording.sensor.dots_only) {
+    const FreePad pad = free_pad_of(recording, DotSource::of_dots_only(folder, recording));
+    findings.insert(findings.end(), pad.told.begin(), pad.told.end());
+  }
   check_gauge(folder, recording, findings);
   note_missing(recording, findings);
 }

@@ -24,9 +24,14 @@ std::vector<Sample> drags_of(const std::filesystem::path& folder, Recording& rec
   }
   const DotGrid free = source.initial();
   Sample mean{.displacement_mm = {0, 0}, .tangential_force_n = {0, 0}};
+  DamagedFrames damaged;
   recording.frames.seek(0);
   for (int k = 0; k < (std::min)(recording.frames.size(), most_frames); ++k) {
-    const DotGrid dots = source.of(k, next_frame(recording.frames, recording.reference.size()));
+    const cv::Mat frame = next_whole_frame(recording.frames, recording.reference.size(), damaged);
+    if (frame.empty()) {
+      continue;
+    }
+    const DotGrid dots = source.of(k, frame);
     const auto force = recording.true_forces.find(k);
     cv::Vec2d way(0, 0);
     int count = 0;

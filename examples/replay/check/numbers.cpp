@@ -4,6 +4,7 @@
 #include <set>
 
 #include "replay/check/parts.hpp"
+#include "replay/steps/fingertip_options.hpp"
 
 namespace replay {
 namespace {
@@ -37,6 +38,11 @@ void check_pressure(const Recording& recording, Findings& findings) {
   } else if (usual < 1e-4) {
     findings.push_back({place, around + ", almost zero",
                         "Check that the gauge is connected and that the unit is not GPa or bar."});
+  }
+  if (const std::string fault = fault_of_pressure(recording); !fault.empty() && least >= 0) {
+    findings.push_back({place, fault,
+                        "Tare the gauge with the pad open: it was set to zero with the pad "
+                        "inflated, or the pad has lost fluid since the reference."});
   }
   if (values.size() >= 10 && std::set<double>(values.begin(), values.end()).size() == 1) {
     findings.push_back(

@@ -155,6 +155,7 @@ DotSource::DotSource(const std::filesystem::path& folder,
 DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording& recording) {
   DotSource source;
   const DotPattern& given = recording.sensor.pattern;
+  source.bright_ = given.bright.value_or(false);
   if (std::filesystem::exists(folder / "dots.csv")) {
     source.read(folder / "dots.csv", recording.frames.size(), {given.cols, given.rows});
     return source;
@@ -168,8 +169,12 @@ DotSource DotSource::of_dots_only(const std::filesystem::path& folder, Recording
   auto finder = finder_of(folder, recording.reference, options);
   const int tried = (std::min)(first_frames, recording.frames.size());
   recording.frames.seek(0);
-  for (int frame = 0; frame < tried && !finder.ok(); ++frame) {
-    finder = finder_of(folder, next_frame(recording.frames, recording.reference.size()), options);
+  DamagedFrames damaged;
+  for (int k = 0; k < tried && !finder.ok(); ++k) {
+    const cv::Mat frame = next_whole_frame(recording.frames, recording.reference.size(), damaged);
+    if (!frame.empty()) {
+      finder = finder_of(folder, frame, options);
+    }
   }
   if (!finder.ok()) {
     fail(folder, "none of the first " + std::to_string(tried) +

@@ -48,6 +48,9 @@ class DotSource {
   /// Diameter of the dots on the free pad; 0 if they are read from dots.csv.
   double diameter_px() const { return finder_ ? 2 * finder_->pattern().radius_px : 0; }
 
+  /// Whether the dots of a dots-only recording are lighter than their background.
+  bool bright() const { return finder_ ? finder_->pattern().bright.value_or(false) : bright_; }
+
   /// The dots of a frame; all NaN for a frame that is not in dots.csv. Without dots.csv the dots
   /// are tracked from frame to frame, so call it in ascending order of frames.
   DotGrid of(int frame, const cv::Mat& image);
@@ -61,6 +64,7 @@ class DotSource {
 
   std::string how_ = "none";
   DotGrid initial_;
+  bool bright_ = false;
   std::map<int, DotGrid> listed_;
   std::optional<fingerpad::DotFinder> finder_;
   std::optional<fingerpad::DotFollower> follower_;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "replay/foam/faults.hpp"
 #include "replay/io/csv_cells.hpp"
 #include "replay/io/failure.hpp"
 #include "replay/median.hpp"
@@ -70,6 +71,9 @@ Header read_header(const fs::path& file, std::string line) {
     line.erase(0, 3);
   }
   const auto refuse = [&](const std::string& why) { fail(file, "line 1: " + why); };
+  if (const std::string why = wrong_separator(line); !why.empty()) {
+    refuse(why);
+  }
   Header header;
   header.names = cells_of(line);
   std::map<std::string, std::size_t> others;
@@ -140,9 +144,13 @@ class TableReader {
       if (cells_.size() == 1 && cells_[0].empty()) {
         continue;
       }
+      if (const std::string why = wrong_separator(line); !why.empty()) {
+        refuse(why);
+      }
       if (cells_.size() > header_.names.size()) {
         refuse("has " + std::to_string(cells_.size()) + " values, but the header has only " +
-               std::to_string(header_.names.size()) + " columns");
+               std::to_string(header_.names.size()) +
+               " columns (decimals must be separated by '.')");
       }
       cells_.resize(header_.names.size());
       add_line();
@@ -202,6 +210,19 @@ double median_step_s(const std::vector<double>& times_s) {
   return steps.empty() ? 0 : median_of(steps);
 }
 
+void expects_seconds(const fs::path& file, double step_s) {
+  constexpr double longest_s = 5;
+  if (step_s > longest_s) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", step_s);
+    const char* const unit = step_s < 5e3   ? "If the unit is ms, divide by 1000"
+                             : step_s < 5e6 ? "If the unit is us, divide by 1,000,000"
+                                            : "If the unit is ns, divide by 1,000,000,000";
+    fail(file, std::string("time_s: the median interval is ") + text +
+                   " s, but must be at most 5 s. " + unit);
+  }
+}
+
 bool share_taxels(const FingerPlace& a, const FingerPlace& b) {
   return a.first_row < b.first_row + b.rows && b.first_row < a.first_row + a.rows &&
          a.first_col < b.first_col + b.cols && b.first_col < a.first_col + a.cols;
@@ -240,6 +261,12 @@ fingerpad::StridedView<const double> FoamRecording::finger(int sample, int finge
   return {all + place.first_row * table.cols + place.first_col, place.rows, place.cols, table.cols};
 }
 
+double FoamRecording::seconds_in(double stated_s) const {
+  const auto first = std::find_if(table.times_s.begin(), table.times_s.end(),
+                                  [](double time_s) { return std::isfinite(time_s); });
+  return first != table.times_s.end() && *first > stated_s ? *first + stated_s : stated_s;
+}
+
 bool is_foam_recording(const fs::path& folder) {
   std::error_code error;
   return fs::exists(folder / "taxels.csv", error);
@@ -256,11 +283,13 @@ FoamRecording open_foam_recording(const fs::path& folder) {
   check_fingers(folder / "sensor.json", recording);
   fingerpad::TaxelOptions& taxels = sensor.taxels;
   const double measured_s = median_step_s(recording.table.times_s);
+  expects_seconds(folder / "taxels.csv", measured_s);
   const double by_default_s = measured_s > 0 ? measured_s : taxels.sample_period_s;
   taxels.sample_period_s = sensor.sample_period_s.value_or(by_default_s);
   // the steps of a slow recording must not count as gaps
   taxels.longest_gap_s =
       sensor.longest_gap_s.value_or((std::max)(taxels.longest_gap_s, 4 * taxels.sample_period_s));
+  repair_readings(folder, recording);
   return recording;
 }
 

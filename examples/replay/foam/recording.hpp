@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
+#include "replay/check/check.hpp"
 #include "replay/foam/sensor.hpp"
 
 namespace replay {
@@ -36,7 +37,11 @@ TaxelTable read_taxels(const std::filesystem::path& file);
 struct FoamRecording {
   FoamSensor sensor;  ///< with defaults for fingers, sample period and longest gap resolved
   TaxelTable table;
+  Findings told;  ///< faults of the readings, which are taken out of the table
 
+  /// A time of sensor.json on the clock of the table: from the first sample on, if that comes later
+  /// (as with seconds since 1970).
+  double seconds_in(double stated_s) const;
   int fingers() const { return static_cast<int>(sensor.fingers.size()); }
   /// The readings of one finger.
   fingerpad::StridedView<const double> finger(int sample, int finger) const;

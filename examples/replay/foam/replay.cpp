@@ -94,6 +94,10 @@ void print_summary(const Options& options,
   if (recording.table.missing > 0) {
     std::printf("missing      %lld readings in the whole recording\n", recording.table.missing);
   }
+  for (const Finding& finding : recording.told) {
+    std::printf("%-12s %s: %s\n", finding.is_wrong ? "left out" : "zero", finding.place.c_str(),
+                finding.what.c_str());
+  }
   const auto not_taken = count([](const FoamRow& row) { return !row.was_taken(); });
   if (not_taken > 0) {
     std::printf("left out     %td samples: the time is missing or not later than before\n",

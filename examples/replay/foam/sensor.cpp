@@ -43,6 +43,7 @@ JsonSection foam_section(const JsonSection& root) {
        {"window", "number of samples over which vibration is measured"},
        {"sample_period_s", "nominal time between samples, s"},
        {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
+       {"free_until_s", "time until which nothing touches the array, s"},
        {"quiet_until_s", "time until which nothing is touched and nothing slips, s"},
        {"noise_factor", "threshold of vibration, as a multiple of the noise"},
        {"saturated_at", "readings at or above this value are ignored"},
@@ -69,6 +70,7 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
   integer("window", sensor.taxels.window);
   number("sample_period_s", sensor.sample_period_s);
   number("noise", sensor.noise);
+  number("free_until_s", sensor.free_until_s);
   number("quiet_until_s", sensor.quiet_until_s);
   number("noise_factor", sensor.taxels.noise_factor);
   number("saturated_at", sensor.taxels.saturated_at);

@@ -22,12 +22,13 @@ struct FingerPlace {
 constexpr int max_fingers = 5;
 
 struct FoamSensor {
-  std::vector<FingerPlace> fingers;        ///< empty: the whole array is one finger
-  fingerpad::TaxelOptions taxels;  ///< except for the members below
-  std::optional<double> noise;             ///< empty: from the quiet part of the recording
-  std::optional<double> quiet_until_s;     ///< empty: the first windows are assumed quiet
-  std::optional<double> sample_period_s;   ///< empty: from the recording
-  std::optional<double> longest_gap_s;     ///< empty: library default, at least four periods
+  std::vector<FingerPlace> fingers;       ///< empty: the whole array is one finger
+  fingerpad::TaxelOptions taxels;         ///< except for the members below
+  std::optional<double> noise;            ///< empty: from the quiet part of the recording
+  std::optional<double> free_until_s;     ///< empty: found, if the first samples are free
+  std::optional<double> quiet_until_s;    ///< empty: the first windows are assumed quiet
+  std::optional<double> sample_period_s;  ///< empty: from the recording
+  std::optional<double> longest_gap_s;    ///< empty: library default, at least four periods
   fingerpad::PreslipOptions rules;
   bool grasp_lift = true;
   bool grasp_optimise = false;

@@ -72,7 +72,8 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
   const auto first_windows = static_cast<int>(4 * sensor.taxels.window);
   const auto is_quiet = [&](int sample) {
     const double time_s = recording.table.times_s[static_cast<std::size_t>(sample)];
-    return sensor.quiet_until_s ? !(time_s > *sensor.quiet_until_s) : sample < first_windows;
+    return sensor.quiet_until_s ? !(time_s > recording.seconds_in(*sensor.quiet_until_s))
+                                : sample < first_windows;
   };
   try {
     fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(), sensor.taxels);

@@ -22,7 +22,7 @@ constexpr const char* columns =
 
 SlideStep step_of(const Options& options, const FreePad& free, const DotSource& dots) {
   try {
-    return {free.frames, dots.initial(), dots.diameter_px()};
+    return {free.frames, dots.initial(), dots.diameter_px(), dots.bright()};
   } catch (const fingerpad::parameter_error& error) {
     fail(options.recording, error.what());
   }
@@ -37,7 +37,7 @@ GelReplay::GelReplay(Recording& recording,
                      int total)
     : options_(options),
       output_(output),
-      free_(free_pad_of(recording)),
+      free_(free_pad_of(recording, dots)),
       step_(step_of(options, free_, dots)),
       file_(output.file("slide.csv")),
       table_(file_),
@@ -97,7 +97,11 @@ void GelReplay::print_summary() const {
   const auto touching = std::count_if(
       rows_.begin(), rows_.end(), [](const GelRow& row) { return row.seen.contact.in_contact(); });
   std::printf("free pad     %zu %s from %s\n", free_.frames.size(),
-              free_.frames.size() == 1 ? "frame" : "frames", free_.source);
+              free_.frames.size() == 1 ? "frame" : "frames", free_.source.c_str());
+  for (const Finding& finding : free_.told) {
+    std::printf("%-12s %s: %s. %s\n", finding.is_wrong ? "wrong" : "note", finding.place.c_str(),
+                finding.what.c_str(), finding.remedy.c_str());
+  }
   std::printf("contact      in %td frames\n", touching);
   const std::size_t slip = first_slip(rows_);
   if (slip < rows_.size()) {

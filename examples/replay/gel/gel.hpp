@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "replay/dots/dots.hpp"
+#include "replay/gel/free_pad.hpp"
 #include "replay/gel/slide_picture.hpp"
 #include "replay/gel/slide_step.hpp"
 #include "replay/io/output.hpp"

@@ -17,15 +17,8 @@ namespace replay {
 /// Options of the contact for dots of this diameter.
 fingerpad::GelOptions gel_options_for(double dot_px);
 
-/// The frames that are taken as the free pad.
-struct FreePad {
-  std::vector<cv::Mat> frames;
-  const char* source;  ///< in words
-};
-
-/// The frames in free/, else the reference of sensor.json, else the first frames of the recording
-/// before any contact. Throws Failure.
-FreePad free_pad_of(Recording& recording);
+/// The same for a frame so wide; `dot_px` 0: 14 px in a frame 640 px wide.
+fingerpad::GelOptions gel_options_of(int width_px, double dot_px, bool bright_dots);
 
 /// One frame of a gel.
 struct GelFrame {
@@ -36,9 +29,11 @@ struct GelFrame {
 
 class SlideStep {
  public:
-  /// `dot_px`: diameter of the dots; 0 if unknown, then 14 px in a frame 640 px wide is assumed.
-  /// Throws fingerpad::parameter_error.
-  SlideStep(const std::vector<cv::Mat>& free_frames, const DotGrid& free_dots, double dot_px);
+  /// `dot_px`: diameter of the dots; 0 if unknown. Throws fingerpad::parameter_error.
+  SlideStep(const std::vector<cv::Mat>& free_frames,
+            const DotGrid& free_dots,
+            double dot_px,
+            bool bright_dots = false);
 
   /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere.
   GelFrame operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace replay {
@@ -21,6 +22,22 @@ inline std::vector<std::string> cells_of(const std::string& line) {
     }
   }
   return cells;
+}
+
+/// Why a line of several cells is not separated by commas; "" if it may be.
+inline std::string wrong_separator(const std::string& line) {
+  if (line.find(',') != std::string::npos && line.find(';') == std::string::npos) {
+    return "";
+  }
+  for (const auto& [separator, name] :
+       {std::pair(';', "';'"), {'\t', "tabs"}, {'|', "'|'"}, {' ', "blanks"}}) {
+    const std::size_t at = line.find_first_not_of(" \t\r");
+    if (at != std::string::npos && line.find(separator, at) < line.find_last_not_of(" \t\r")) {
+      return std::string("the values are separated by ") + name +
+             ", but must be by ',' (and decimals by '.'); write the table again with these";
+    }
+  }
+  return "";
 }
 
 /// Whether the whole cell is a finite number.

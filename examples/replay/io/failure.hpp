@@ -14,13 +14,20 @@ class Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A picture that is damaged: the others may be read without it.
+class Unreadable : public Failure {
+ public:
+  using Failure::Failure;
+};
+
 /// Throws Failure("FILE: why") as one line, even if `why` from a library has several.
+template <class Error = Failure>
 [[noreturn]] inline void fail(const std::filesystem::path& file, const std::string& why) {
   std::string line = file.string() + ": " + why;
   for (char& c : line) {
     c = c == '\n' || c == '\r' ? ' ' : c;
   }
-  throw Failure(line);
+  throw Error(line);
 }
 
 }  // namespace replay

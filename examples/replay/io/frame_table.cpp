@@ -13,6 +13,7 @@ namespace {
 
 using Row = FrameRow;
 using Text = std::string;
+constexpr const char* compressed = "compressed";
 
 Text cell_if(bool known, double value) {
   return known ? cell_of(value) : "";
@@ -24,7 +25,8 @@ Text whole_if(bool known, fingerpad::Index value) {
 
 Text depth_status(const Row& row) {
   const auto light = row.touch.neighbour_light;
-  return !row.has_depth ? "" : name_of(row.touch.depth.ok() ? light : row.touch.depth.status);
+  const Text words = name_of(row.touch.depth.ok() ? light : row.touch.depth.status);
+  return !row.has_depth ? "" : words == "ok" && row.compressed ? compressed : words;
 }
 
 Text contact_status(const Row& row) {
@@ -33,6 +35,7 @@ Text contact_status(const Row& row) {
          : !touch.contact.ok()                                  ? name_of(touch.contact.status)
          : touch.contact_in_doubt && touch.contact.in_contact() ? "edge in doubt"
          : touch.contact_in_doubt                               ? "force without region"
+         : row.compressed                                       ? compressed
                                                                 : "ok";
 }
 
@@ -40,6 +43,7 @@ Text look_up_status(const Row& row) {
   const auto status = row.touch.normal.status;
   return !row.has_curves                              ? ""
          : !row.touch.contact.ok()                    ? "contact in doubt"
+         : row.compressed                             ? compressed
          : status == fingerpad::ForceStatus::measured ? "ok"
                                                       : name_of(status);
 }

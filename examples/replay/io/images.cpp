@@ -24,6 +24,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The 16-bit number at `at`, high byte first; 0 beyond the end.
+std::size_t word_at(const std::string& bytes, std::size_t at) {
+  const auto byte = [&](std::size_t k) {
+    return k < bytes.size() ? static_cast<std::size_t>(static_cast<uchar>(bytes[k])) : 0;
+  };
+  return 256 * byte(at) + byte(at + 1);
+}
+
+/// Whether a JPEG file ends before its end marker: the decoder fills the rest with grey.
+bool is_cut_jpeg(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  if (word_at(bytes, 0) != 0xFFD8) {
+    return false;
+  }
+  constexpr std::size_t scan = 0xFFDA, end = 0xFFD9;
+  bool in_scan = false;
+  for (std::size_t at = 2; at + 1 < bytes.size();) {
+    const std::size_t marker = word_at(bytes, at);
+    if (marker == end) {
+      return false;
+    }
+    const bool is_data = marker <= 0xFF00 || (marker >= 0xFFD0 && marker < 0xFFD8);
+    if (is_data || marker == 0xFFFF) {
+      if (!in_scan && marker != 0xFFFF) {
+        return false;  // damaged in another way, of which the decoder has its own opinion
+      }
+      ++at;
+    } else {
+      in_scan = in_scan || marker == scan;
+      at += 2 + word_at(bytes, at + 2);
+    }
+  }
+  return true;
+}
+
 cv::Mat read_image(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
@@ -37,8 +73,12 @@ cv::Mat read_image(const fs::path& file) {
     image.release();
   }
   if (image.empty()) {
-    fail(file,
-         "cannot be read as an image (damaged, cut short, of an unknown format, or too large)");
+    fail<Unreadable>(
+        file,
+        "cannot be read as an image (damaged, cut short, of an unknown format, or too large)");
+  }
+  if (is_cut_jpeg(file)) {
+    fail<Unreadable>(file, "is cut short: a part of the picture is missing");
   }
   return image;
 }
@@ -109,6 +149,13 @@ cv::Mat read_stored_image(const fs::path& file) {
   if (image.depth() != CV_8U && image.depth() != CV_16U) {
     fail(file, "must have 8 or 16 bits per channel");
   }
+  const int colours = image.channels() - 1 + image.channels() % 2;  // without transparency
+  if (colours < image.channels()) {
+    cv::Mat opaque(image.size(), CV_MAKETYPE(image.depth(), colours));
+    cv::mixChannels({image}, {opaque},
+                    colours == 1 ? std::vector<int>{0, 0} : std::vector<int>{0, 0, 1, 1, 2, 2});
+    image = opaque;
+  }
   return image;
 }
 
@@ -154,13 +201,16 @@ cv::Mat linear_colours(const cv::Mat& stored, const PictureFormat& format, const
   if (stored.depth() != CV_8U && stored.depth() != CV_16U) {
     fail(file, "must have 8 or 16 bits per channel");
   }
-  if (is_raw ? stored.channels() != 1 : stored.channels() < 3) {
+  cv::Mat image = stored;
+  if (format.may_be_grey && stored.channels() == 1) {
+    cv::cvtColor(stored, image, cv::COLOR_GRAY2BGR);
+  }
+  if (is_raw ? image.channels() != 1 : image.channels() < 3) {
     fail(file, "has " + std::to_string(stored.channels()) +
                    (stored.channels() == 1 ? " channel" : " channels") +
                    (is_raw ? ", but camera.mosaic says that pictures are raw, of one channel"
                            : ", but must be a colour image (red and green are used)"));
   }
-  cv::Mat image = stored;
   if (!format.response.empty()) {
     image = without_response(in_16_bit(image), format.response);
   }
@@ -169,6 +219,25 @@ cv::Mat linear_colours(const cv::Mat& stored, const PictureFormat& format, const
 
 cv::Mat read_colour_image(const fs::path& file, const PictureFormat& format) {
   return linear_colours(read_stored_image(file), format, file);
+}
+
+double step_between_blocks(const cv::Mat& frame, const cv::Mat_<uchar>& pad) {
+  cv::Mat red, green;
+  cv::Mat_<float> colour;
+  cv::extractChannel(frame, red, 2);
+  cv::extractChannel(frame, green, 1);
+  cv::subtract(red, green, colour, cv::noArray(), CV_32F);
+  double sum[2] = {0, 0}, count[2] = {0, 0};
+  for (int i = 0; i < frame.rows; ++i) {
+    for (int j = 1; j < frame.cols; ++j) {
+      if (pad(i, j - 1) != 0 && pad(i, j) != 0) {
+        const int at_border = j % 16 == 0 ? 1 : 0;
+        sum[at_border] += static_cast<double>(std::abs(colour(i, j) - colour(i, j - 1)));
+        count[at_border] += 1;
+      }
+    }
+  }
+  return sum[1] / count[1] / (sum[0] / count[0]);
 }
 
 cv::Mat_<float> read_depth_image(const fs::path& file) {

@@ -33,14 +33,16 @@ struct PictureFormat {
       response;        ///< light of each value of 8 bit, 0 to 255; empty: the value itself
   std::string mosaic;  ///< colours of the first two pixels of the first two rows, "rggb", of raw
                        ///< pictures of one channel; empty: colour pictures
+  bool may_be_grey = false;  ///< pictures of one channel are read as grey colours
 };
 /// The response of sRGB.
 std::vector<double> srgb_response();
 
-/// Reads an image of 8 or 16 bit as it is stored; throws Failure.
+/// Reads an image of 8 or 16 bit as it is stored, without transparency; throws Failure, and
+/// Unreadable for a damaged file.
 cv::Mat read_stored_image(const std::filesystem::path& file);
 
-/// An 8- or 16-bit colour image (BGR or BGRA, OpenCV order), linear in light, of a stored image:
+/// An 8- or 16-bit colour image (BGR, OpenCV order), linear in light, of a stored image:
 /// the one place where a response curve or a mosaic is undone. Throws Failure, with `file` in its
 /// message, if the image has not this format.
 cv::Mat linear_colours(const cv::Mat& stored,
@@ -49,6 +51,13 @@ cv::Mat linear_colours(const cv::Mat& stored,
 
 /// Reads such an image; throws Failure.
 cv::Mat read_colour_image(const std::filesystem::path& file, const PictureFormat& format = {});
+
+/// Mean step of red - green across the borders of blocks of 16 columns in `pad`, over that
+/// elsewhere. About 1 in raw pictures and up to 1.26 after a mosaic; JPEG and video keep colours in
+/// such blocks.
+double step_between_blocks(const cv::Mat& frame, const cv::Mat_<uchar>& pad);
+/// More than in pictures that were never compressed.
+constexpr double compressed_step = 1.35;
 
 /// Reads a 32-bit float image of one channel, mm; throws Failure.
 cv::Mat_<float> read_depth_image(const std::filesystem::path& file);

@@ -17,6 +17,9 @@ NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<st
   if (!std::getline(stream, text)) {
     fail(file, "is empty or cannot be read");
   }
+  if (const std::string why = wrong_separator(text); !why.empty()) {
+    refuse(1, why);
+  }
   if (cells_of(text) != header) {
     std::string names;
     for (const std::string& name : header) {
@@ -30,8 +33,13 @@ NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<st
       continue;
     }
     if (cells.size() != header.size()) {
-      refuse(number, "has " + std::to_string(cells.size()) + " values, must have " +
-                         std::to_string(header.size()));
+      const std::string why = wrong_separator(text);
+      refuse(number, !why.empty() ? why
+                                  : "has " + std::to_string(cells.size()) + " values, must have " +
+                                        std::to_string(header.size()) +
+                                        (cells.size() > header.size()
+                                             ? " (decimals must be separated by '.')"
+                                             : ""));
     }
     Line line{number, std::vector<double>(cells.size())};
     for (std::size_t k = 0; k < cells.size(); ++k) {

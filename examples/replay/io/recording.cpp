@@ -8,6 +8,7 @@
 
 #include "replay/io/failure.hpp"
 #include "replay/io/images.hpp"
+#include "replay/median.hpp"
 
 namespace replay {
 namespace {
@@ -18,9 +19,44 @@ std::string size_of(const cv::Mat& image) {
   return std::to_string(image.cols) + " x " + std::to_string(image.rows) + " px";
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+std::size_t end_of_digits(const std::string& text, std::size_t at) {
+  while (at < text.size() && is_digit(text[at])) {
+    ++at;
+  }
+  return at;
+}
+
+/// The end of the decimals of the number whose whole part is [first, end), as in 17.05; else `end`.
+/// Numbers in a row, as in 2026.11.27, have none.
+std::size_t end_of_decimals(const std::string& text, std::size_t first, std::size_t end) {
+  const std::size_t last = end < text.size() && text[end] == '.' ? end_of_digits(text, end + 1) : 0;
+  const bool in_a_row = (first > 1 && text[first - 1] == '.' && is_digit(text[first - 2])) ||
+                        (last + 1 < text.size() && text[last] == '.' && is_digit(text[last + 1]));
+  return last > end + 1 && !in_a_row ? last : end;
+}
+
+/// Whether digits after a point are decimals, whose trailing zeros are left out: 17.1 comes after
+/// 17.05. Otherwise they count, as in 17.9 and 17.10.
+bool have_decimals(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    const std::string name = file.stem().string();
+    for (std::size_t at = 0; at < name.size();) {
+      const std::size_t end = end_of_digits(name, at), last = end_of_decimals(name, at, end);
+      if (end > at && last > end + 2 && name[last - 1] == '0') {
+        return false;
+      }
+      at = (std::max)(last, at + 1);
+    }
+  }
+  return true;
+}
+
 /// Natural order: numbers in names compare by value, so frame10 comes after frame2.
-bool comes_before(const std::string& a, const std::string& b) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+bool comes_before(const std::string& a, const std::string& b, bool with_decimals) {
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size() && j < b.size()) {
@@ -33,15 +69,17 @@ bool comes_before(const std::string& a, const std::string& b) {
       continue;
     }
     const auto number = [&](const std::string& text, std::size_t& at) {
-      const std::size_t first = std::min(text.find_first_not_of('0', at), text.size());
-      for (at = first; at < text.size() && is_digit(text[at]); ++at) {
-      }
-      return text.substr(first, at - first);
+      const std::size_t first = at, end = end_of_digits(text, at);
+      at = with_decimals ? end_of_decimals(text, first, end) : end;
+      const std::size_t begin = (std::min)(text.find_first_not_of('0', first), end);
+      std::string decimals = text.substr(end, at - end);
+      decimals.erase(decimals.find_last_not_of(".0") + 1);
+      return std::pair(text.substr(begin, end - begin), decimals);
     };
-    const std::string one = number(a, i);
-    const std::string other = number(b, j);
+    const auto one = number(a, i), other = number(b, j);
     if (one != other) {
-      return one.size() != other.size() ? one.size() < other.size() : one < other;
+      return one.first.size() != other.first.size() ? one.first.size() < other.first.size()
+                                                    : one < other;
     }
   }
   return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
@@ -67,8 +105,10 @@ FrameSource FrameSource::of_folder(const fs::path& folder, PictureFormat format)
   if (source.files_.empty()) {
     fail(folder, "holds no frames");
   }
-  std::sort(source.files_.begin(), source.files_.end(), [](const fs::path& a, const fs::path& b) {
-    return comes_before(a.filename().string(), b.filename().string());
+  const bool decimals = have_decimals(source.files_);
+  std::sort(source.files_.begin(), source.files_.end(), [&](const fs::path& a, const fs::path& b) {
+    const std::string one = a.stem().string(), other = b.stem().string();
+    return one != other ? comes_before(one, other, decimals) : a < b;
   });
   source.count_ = static_cast<int>(source.files_.size());
   return source;
@@ -125,14 +165,35 @@ cv::Mat FrameSource::next_stored() {
   return frame;
 }
 
-cv::Mat next_frame(FrameSource& frames, cv::Size size) {
-  cv::Mat image = frames.next();
-  if (image.size() != size) {
+namespace {
+
+/// Empty for a damaged frame.
+cv::Mat next_whole(FrameSource& frames, DamagedFrames& damaged) {
+  try {
+    return frames.next();
+  } catch (const Unreadable& unreadable) {
+    damaged.emplace(frames.last_frame(), unreadable.what());
+    return {};
+  }
+}
+
+cv::Mat expects_size(const FrameSource& frames, cv::Mat image, cv::Size size) {
+  if (!image.empty() && image.size() != size) {
     fail(frames.last_file(), "is " + size_of(image) + ", but the reference is " +
                                  std::to_string(size.width) + " x " + std::to_string(size.height) +
                                  " px");
   }
   return image;
+}
+
+}  // namespace
+
+cv::Mat next_frame(FrameSource& frames, cv::Size size) {
+  return expects_size(frames, frames.next(), size);
+}
+
+cv::Mat next_whole_frame(FrameSource& frames, cv::Size size, DamagedFrames& damaged) {
+  return expects_size(frames, next_whole(frames, damaged), size);
 }
 
 namespace {
@@ -149,13 +210,42 @@ void read_reference(const fs::path& folder, Recording& recording) {
   }
 }
 
+/// Finds the first frame that is whole and as light as most of the first ones, because a camera may
+/// begin dark or overexposed. Throws Failure.
+void find_first_frame(Recording& recording) {
+  constexpr int tried = 10;
+  constexpr double most = 1.25;  // times as light or as dark
+  std::map<int, double> levels;
+  std::vector<double> all;
+  std::vector<cv::Mat> pictures;
+  DamagedFrames damaged;
+  recording.frames.seek(0);
+  for (int k = 0; k < (std::min)(tried, recording.frames.size()); ++k) {
+    pictures.push_back(next_whole(recording.frames, damaged));
+    if (!pictures.back().empty()) {
+      const double unit = pictures.back().depth() == CV_16U ? 1.0 / 256 : 1;
+      all.push_back(levels[k] = 1 + unit * cv::sum(cv::mean(pictures.back()))[0]);
+    }
+  }
+  if (all.empty()) {
+    throw Unreadable(damaged.begin()->second);
+  }
+  const double usual = median_of(all);
+  for (const auto& [k, level] : levels) {
+    if (level < most * usual && level * most > usual) {
+      recording.first_frame = k;
+      recording.reference = pictures[static_cast<std::size_t>(k)];
+      return;
+    }
+  }
+}
+
 /// Reads the reference of a dots-only recording, or its first frame.
 void read_first_picture(const fs::path& folder, Recording& recording) {
-  if (recording.sensor.reference_frame.empty()) {
-    recording.frames.seek(0);
-    recording.reference = recording.frames.next();
-  } else {
-    recording.reference = read_colour_image(folder / recording.sensor.reference_frame);
+  find_first_frame(recording);
+  if (!recording.sensor.reference_frame.empty()) {
+    recording.reference =
+        read_colour_image(folder / recording.sensor.reference_frame, recording.sensor.pictures);
   }
 }
 

@@ -36,6 +36,8 @@ class FrameSource {
   cv::Mat next_stored();
   /// The file of the last frame, for messages.
   std::filesystem::path last_file() const;
+  /// The number of the last frame, counted from 0.
+  int last_frame() const { return position_ - 1; }
 
  private:
   std::vector<std::filesystem::path> files_;  ///< one per frame, or the video alone
@@ -48,11 +50,17 @@ class FrameSource {
 /// The next frame, which must be of `size`; throws Failure.
 cv::Mat next_frame(FrameSource& frames, cv::Size size);
 
+/// The numbers of damaged frames, and why each cannot be read.
+using DamagedFrames = std::map<int, std::string>;
+/// The same, but a damaged frame is added to `damaged`, and an empty one returned.
+cv::Mat next_whole_frame(FrameSource& frames, cv::Size size, DamagedFrames& damaged);
+
 struct Recording {
   Sensor sensor;
   cv::Mat reference;  ///< the free pad, 8- or 16-bit colour; if dots-only, maybe the first frame
   cv::Mat_<float> reference_depth;  ///< mm, NaN outside the pad; empty if dots-only
   FrameSource frames;
+  int first_frame = 0;      ///< if dots-only: the first that is as light as those after it
   FrameSource free_frames;  ///< more frames of the free pad; may be empty
   Signals signals;
   std::map<int, TrueForce> true_forces;  ///< by frame; may be empty

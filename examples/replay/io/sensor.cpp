@@ -399,6 +399,7 @@ Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& cont
   }
   sensor.dots_only = !names_depth(root);
   if (sensor.dots_only) {
+    sensor.pictures.may_be_grey = true;
     read_dots_only(root, sensor);
   } else {
     read_depth(file, root, sensor);

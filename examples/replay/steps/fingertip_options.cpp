@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
+#include "fingerpad/membrane/free_pad.hpp"
 
 namespace replay {
 namespace {
@@ -102,6 +104,39 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   return settings;
 }
 
+std::string fault_of_pressure(const Recording& recording) {
+  const auto& [radius_mm, height_mm] = recording.sensor.pad;
+  const auto& rim = recording.sensor.rim;
+  const auto& pressures = recording.signals.pressures_mpa;
+  if (!rim || !rim->membrane_modulus_n_per_mm || !rim->stress_free_inclination_rad ||
+      pressures.empty()) {
+    return "";
+  }
+  double least_mpa = pressures.begin()->second;
+  for (const auto& [frame, mpa] : pressures) {
+    least_mpa = std::fmin(least_mpa, mpa);
+  }
+  constexpr double share = 0.08;  // what the height is known to allows so much
+  const fingerpad::FreePad<double> pad(
+      {radius_mm, radius_mm * std::tan(*rim->stress_free_inclination_rad / 2), rim->mooney_share});
+  double low = 0, high = 1;  // per mm
+  for (int step = 0; step < 40; ++step) {
+    const double load = (low + high) / 2;
+    const auto free = pad.rim(load);
+    (free && free->apex_mm < height_mm ? low : high) = load;
+  }
+  const double needed_mpa = low * *rim->membrane_modulus_n_per_mm;
+  if (!(least_mpa < (1 - share) * needed_mpa)) {
+    return "";
+  }
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "the lowest pressure is %.4f MPa, but the free pad needs about %.4f MPa to be %.2f "
+                "mm high (pad.apex_height_mm)",
+                least_mpa, needed_mpa, height_mm);
+  return text;
+}
+
 std::string lacking_for_wrench(const Recording& recording) {
   const auto& rim = recording.sensor.rim;
   return recording.sensor.dots_only          ? "the recording has dots only"
@@ -109,7 +144,7 @@ std::string lacking_for_wrench(const Recording& recording) {
          : !rim->membrane_modulus_n_per_mm   ? "sensor.json has no rim.membrane_modulus_n_per_mm"
          : !rim->stress_free_inclination_rad ? "sensor.json has no rim.stress_free_inclination_rad"
          : recording.signals.pressures_mpa.empty() ? "signals.csv has no pressure"
-                                                   : "";
+                                                   : fault_of_pressure(recording);
 }
 
 }  // namespace replay

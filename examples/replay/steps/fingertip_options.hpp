@@ -40,6 +40,9 @@ struct FingertipSettings {
 /// needs, is not set. The recording must outlive the settings. Throws fingerpad::parameter_error.
 FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px);
 
+/// Says that the pressure is too low to make the free pad as high as it is; empty if it is not.
+std::string fault_of_pressure(const Recording& recording);
+
 /// Why a recording has no six-axis forces; empty if it has them.
 std::string lacking_for_wrench(const Recording& recording);
 

@@ -45,8 +45,12 @@ double contact_threshold_of(Recording& recording, const FingertipOptions& option
   const cv::Size size = recording.reference.size();
   std::vector<cv::Mat_<float>> depths_mm;
   recording.free_frames.seek(0);
-  for (int frame = 0; frame < recording.free_frames.size(); ++frame) {
-    depths_mm.push_back(free_depth_of(options, next_frame(recording.free_frames, size)));
+  DamagedFrames damaged;
+  for (int k = 0; k < recording.free_frames.size(); ++k) {
+    const cv::Mat frame = next_whole_frame(recording.free_frames, size, damaged);
+    if (!frame.empty()) {
+      depths_mm.push_back(free_depth_of(options, frame));
+    }
   }
   return fit_contact_threshold(recording.sensor.camera, depths_mm).threshold_per_mm;
 }

@@ -7,9 +7,10 @@
 //
 // The difference is relative, (now / gain) / free - 1, so that lamps may be uneven. The gain of
 // each channel is the median of now / free, so that exposure and white balance may change. The
-// median is taken over the frame or, if more than half of the frame differs, over its border. Dots
-// are left out: they move with the gel beside a contact as well as under it, and would be taken for
-// contact.
+// median is taken over the frame or, if more than half of the frame differs, over its border. Where
+// it leaves a difference in most cells, because a lamp has faded on one side or flickers in bands,
+// it is multiplied by a plane or by the medians of rows or columns. Dots are left out: they move
+// with the gel beside a contact as well as under it, and would be taken for contact.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -23,6 +24,7 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -35,6 +37,7 @@ struct GelOptions {
   double dot_px = 14;       ///< diameter of the printed dots, in [0, 16 cell_px]; 0: no dots
   double dot_contrast = 0.1;  ///< a cell darker than its surroundings by this fraction belongs to a
                               ///< dot; in (0, 1)
+  bool bright_dots = false;   ///< dots are lighter than their surroundings, not darker
   double min_difference = 0.02;  ///< smallest threshold, as a fraction of the free brightness,
                                  ///< however low the noise of the free frames; in (0, 1)
   double max_gap_px = 28;   ///< gaps in a contact up to this width are closed, by default two dots;
@@ -102,9 +105,12 @@ class GelContact {
     for (cv::Mat_<float>* image : {&weight_, &both_, &grey_, &share_, &difference_, &imprint_}) {
       image->create(inner_.size());
     }
-    relative_.create(inner_.size());
+    for (cv::Mat_<cv::Vec3f>* image : {&relative_, &gains_, &trial_}) {
+      image->create(inner_.size());
+    }
     values_.reserve(static_cast<std::size_t>(inner_.area()));
     holes_.reserve(values_.capacity());
+    cells_.reserve(values_.capacity());
     learn(free_frames);
     (void)(*this)(free_frames.front());  // OpenCV allocates the other images
   }
@@ -149,6 +155,7 @@ class GelContact {
  private:
   static constexpr float min_share = 0.05F;  // of the Gaussian's weight that is on gel
   static constexpr float saturated = 254;
+  static constexpr double max_slope = 0.12;  // of a lamp that fades, across the frame
 
   double in_cells(double px) const { return px / options_.cell_px; }
   bool is_border(int k) const {
@@ -183,9 +190,10 @@ class GelContact {
       const int width = 2 * cvCeil(2 * in_cells(options_.dot_px)) + 1;
       cv::blur(grey_, around_, {width, width}, {-1, -1}, cv::BORDER_CONSTANT);
       cv::blur(weight_, share_, {width, width}, {-1, -1}, cv::BORDER_CONSTANT);
-      const float gel = static_cast<float>(1 - options_.dot_contrast);
+      const float sign = options_.bright_dots ? -1 : 1;
+      const float gel = sign * (1 - sign * static_cast<float>(options_.dot_contrast));
       for (int k = 0; k < inner_.area(); ++k) {
-        weight_(k) = grey_(k) * share_(k) < gel * around_(k) ? 0 : weight_(k);
+        weight_(k) = sign * grey_(k) * share_(k) < gel * around_(k) ? 0 : weight_(k);
       }
       cv::erode(weight_, weight_, cv::Mat());  // dots may reach into the cells beside
     }
@@ -222,26 +230,135 @@ class GelContact {
   }
 
   /// Sets difference_ to the root mean square over the channels of now / gain / free - 1, smoothed
-  /// over the gel that both frames show. The gain is that of a lattice over the frame, or of the
-  /// border.
+  /// over the gel that both frames show.
   void compare(bool by_border) {
     cv::multiply(weight_, free_weight_, both_);
-    for (int c = 0; c < 3; ++c) {
-      values_.clear();
-      for (int k = 0; k < inner_.area(); k += by_border ? 1 : 1 + inner_.area() / 2048) {
-        if (both_(k) > 0 && (!by_border || is_border(k))) {
-          values_.push_back(now_(k)[c] / free_(k)[c]);
-        }
-      }
-      gain_[c] = quantile(0.5, 1);
-    }
+    find_gains(by_border);
     relate();
     average(difference_);
+  }
+
+  /// Sets the gain of each cell to the median over a lattice over the frame, or over its border;
+  /// and over the frame, as long as this halves the median difference of the frame and that of its
+  /// border, multiplies it by a plane, or by the medians of rows or of columns.
+  void find_gains(bool by_border) {
+    cells_.clear();
+    for (int k = 0; k < inner_.area(); k += by_border ? 1 : 1 + inner_.area() / 2048) {
+      if (both_(k) > 0 && (!by_border || is_border(k))) {
+        cells_.push_back(k);
+      }
+    }
+    gains_.setTo(cv::Scalar::all(1));
+    multiply_by_plane(0);
+    cv::swap(gains_, trial_);
+    const float enough = static_cast<float>(options_.min_difference) / 4;
+    bool is_better = !by_border;
+    for (int change = 0; change < 3 && is_better; ++change) {
+      const cv::Vec2f left = median_differences(gains_);
+      is_better = false;
+      for (int shape = 0; shape < 3 && !is_better && left[0] > enough; ++shape) {
+        is_better = shape == 0 ? multiply_by_plane(8) : multiply_by_lines(shape == 1);
+        const cv::Vec2f now = median_differences(trial_);
+        is_better = is_better && now[0] < left[0] / 2 && now[1] < left[1] / 2;
+      }
+      if (is_better) {
+        cv::swap(gains_, trial_);
+      }
+    }
+  }
+  float ratio(int k, int c) const { return now_(k)[c] / (gains_(k)[c] * free_(k)[c]); }
+  /// Medians over cells_ and over the border of the largest difference in a channel.
+  cv::Vec2f median_differences(const cv::Mat_<cv::Vec3f>& gains) {
+    cv::Vec2f medians;
+    const auto add = [&](int k) {
+      float most = 0;
+      for (int c = 0; c < 3; ++c) {
+        most = (std::max)(most, std::abs(now_(k)[c] / (gains(k)[c] * free_(k)[c]) - 1));
+      }
+      values_.push_back(most);
+    };
+    values_.clear();
+    std::for_each(cells_.begin(), cells_.end(), add);
+    medians[0] = quantile(0.5, 0);
+    values_.clear();
+    for (int k = 0; k < inner_.area(); ++k) {
+      if (is_border(k) && both_(k) > 0) {
+        add(k);
+      }
+    }
+    medians[1] = quantile(0.5, 0);
+    return medians;
+  }
+  /// Sets trial_ to gains_ times the median of what they leave or, after some steps of reweighted
+  /// least squares, times the plane with the least sum of absolute differences. False: its slope is
+  /// not that of a lamp that fades, but of other lamps.
+  bool multiply_by_plane(int steps) {
+    bool fades = true;
+    const auto place = [&](int k) {
+      return cv::Vec3d(double(k % inner_.width) / inner_.width - 0.5,
+                       double(k / inner_.width) / inner_.height - 0.5, 1);
+    };
+    for (int c = 0; c < 3; ++c) {
+      values_.clear();
+      for (const int k : cells_) {
+        values_.push_back(ratio(k, c));
+      }
+      cv::Vec3d plane(0, 0, static_cast<double>(quantile(0.5, 1)));
+      for (int step = 0; step < steps; ++step) {
+        detail::ProductSums<double, 4> sums;
+        for (const int k : cells_) {
+          const double seen = static_cast<double>(ratio(k, c));
+          const cv::Vec3d at = place(k);
+          const double root = 1 / std::sqrt(std::abs(seen - plane.dot(at)) + 0.002);
+          sums.add({root * at[0], root * at[1], root, root * seen});
+        }
+        const detail::NormalEquations<double, 3> equations(sums.corner<3>(), 1e-7);
+        if (equations.good) {
+          const auto found = equations.solve(sums.column<3>(3));
+          plane = {found[0], found[1], found[2]};
+        }
+      }
+      for (int k = 0; k < inner_.area(); ++k) {
+        trial_(k)[c] = gains_(k)[c] * static_cast<float>(plane.dot(place(k)));
+      }
+      fades = fades && std::hypot(plane[0], plane[1]) < max_slope * plane[2];
+    }
+    return fades;
+  }
+  /// Sets trial_ to gains_ times the median of what they leave in each row, or in each column.
+  /// False: these do not rise and fall, as bands do.
+  bool multiply_by_lines(bool rows) {
+    int side = 0, turns = 0;
+    const int lines = rows ? inner_.height : inner_.width;
+    for (int line = 0; line < lines; ++line) {
+      const int first = rows ? line * inner_.width : line, step = rows ? 1 : inner_.width;
+      const int last = first + step * (inner_.area() / lines);
+      float sum = 0;
+      for (int c = 0; c < 3; ++c) {
+        values_.clear();
+        for (int k = first; k < last; k += step) {
+          if (both_(k) > 0) {
+            values_.push_back(ratio(k, c));
+          }
+        }
+        const float median = quantile(0.5, 1);
+        sum += median - 1;
+        for (int k = first; k < last; k += step) {
+          trial_(k)[c] = gains_(k)[c] * median;
+        }
+      }
+      if (std::abs(sum / 3) > static_cast<float>(options_.min_difference) / 2) {
+        const int now = sum > 0 ? 1 : -1;
+        turns += side != 0 && now != side ? 1 : 0;
+        side = now;
+      }
+    }
+    return turns > 1;
   }
   void relate() {
     for (int k = 0; k < inner_.area(); ++k) {
       for (int c = 0; c < 3; ++c) {
-        relative_(k)[c] = both_(k) > 0 ? now_(k)[c] / (gain_[c] * free_(k)[c]) - 1 : 0;
+        relative_(k)[c] = both_(k) > 0 ? ratio(k, c) - 1 : 0;
       }
     }
   }
@@ -335,15 +452,14 @@ class GelContact {
   int type_ = 0;    // of a frame
   cv::Rect inner_;  // the frame in wide_, in cells
   double threshold_ = 0;
-  cv::Vec3f gain_;
   cv::Mat closing_, dot_, half_, small_, colours_;
-  cv::Mat_<cv::Vec3f> now_, free_, relative_, smooth_;
+  cv::Mat_<cv::Vec3f> now_, free_, relative_, smooth_, gains_, trial_;
   cv::Mat_<float> weight_, free_weight_, free_seen_, both_, share_, grey_, around_, difference_,
       imprint_;
   cv::Mat_<unsigned char> mask_, wide_;
   std::vector<std::vector<cv::Point>> outlines_;
   std::vector<float> values_;
-  std::vector<int> holes_;
+  std::vector<int> holes_, cells_;
 };
 
 }  // namespace v0
