@@ -245,6 +245,30 @@ TEST_CASE("friction limit: the standard deviation knows the noise of the load") 
   CHECK(mean_sd < 0.2);
 }
 
+TEST_CASE("friction limit: fast reversals of an object that slides and carries all dots alike") {
+  // The dots tell 1. The load changes in every frame, and L stays at the limit, to its noise.
+  test::Random random(5);
+  test::SlippingPatch patch;
+  StickRatio<> stick(21, 21, {.noise = 0.005});
+  FrictionLimit<double> limit;
+  for (int k = 0; k < 3; ++k) {
+    (void)limit(pull(2.2), 0.1, RatioUpdate::fresh);
+  }
+  int told_to_stick = 0, beyond = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double normal_n = random.uniform(2, 6), noise = 1 + 0.021 * random.normal();
+    const auto seen = stick(noisy(patch.dots, 0.005, 0.025, random), patch.contact);
+    const auto r = limit(pull(0.55 * normal_n * noise, normal_n), seen);
+    told_to_stick += r.ok() && r.stick_ratio > 0.5 ? 1 : 0;
+    beyond += r.ok() && r.stick_ratio > 2 * r.ratio_sd ? 1 : 0;
+    const double away = k % 4 < 2 ? 0.3 : -0.3;
+    patch.step(test::moved_by({0, 0, 0}, {0, 0, 0}, {away, 0.1 * away, 0}));
+  }
+  CAPTURE(told_to_stick, beyond);
+  CHECK(told_to_stick < 12);  // in 1 of 120 frames L lies below 0.95 of its mean
+  CHECK(beyond <= 1);
+}
+
 TEST_CASE("friction limit: dots that slip more than friction lets them are in doubt") {
   // half of the contact slips under a tenth of its weight: a soft object, or a friction below 0.2
   const StickResult<double> seen{
