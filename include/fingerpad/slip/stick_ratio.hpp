@@ -53,7 +53,7 @@ enum class StickStatus : std::uint8_t {
   /// object that reverses carries them, or one that slides lets them go. The dots do not show
   /// which; the force does (friction_limit.hpp).
   falls_back,
-  too_few_dots,  ///< fewer than min_dots to compare, or on a line; nothing is dropped
+  too_few_dots,  ///< fewer than six to compare, or in space on a line; nothing is dropped
   /// More than a fifth of the dots in contact are not between their neighbours, or the dots are
   /// labelled differently than before: all shifted by one place, rows and columns exchanged, two
   /// halves exchanged. Or U is more than half a pitch, so that the noise was given in another unit.
@@ -64,7 +64,7 @@ enum class StickStatus : std::uint8_t {
   /// that is dragged along around it. The ratio is NaN. Give the true contact, or set
   /// covers_pattern.
   no_outline,
-  no_contact,  ///< nothing touches; after hold_s all stored frames are dropped
+  no_contact,  ///< nothing touches; after 0.2 s all stored frames are dropped
   refused,     ///< a grid has another size: nothing was done
 };
 
