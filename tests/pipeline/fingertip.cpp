@@ -14,6 +14,7 @@
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/refusal.hpp"
+#include "support/rim_marks.hpp"
 
 using namespace chain;
 
@@ -554,6 +555,51 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   REQUIRE(unfelt.wrench.ok());
   CHECK(unfelt.contact.in_contact());
   CHECK(unfelt.contact_in_doubt);
+}
+
+TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]") {
+  using fingerpad::Point2;
+  const auto& scenes = test::rim_scenes();
+  const test::RimScene& s = *std::find_if(scenes.begin(), scenes.end(),
+                                          [](const auto& one) { return one.name == "bowl"; });
+  const auto &free = s.frames.front(), &pressed = s.frames[1];
+  FingertipOptions options = frames().options();
+  const std::vector<fingerpad::Point3<double>> cells(free.dots_mm.size());
+  const auto rows = static_cast<fingerpad::Index>(cells.size());
+  options.free_dots_mm = {cells.data(), rows, 1, 1};
+  options.wrench = test::SeenRim::options_of(s, true);
+  options.wrench->pressure_sd_share = 0.002;
+  const std::vector<std::uint8_t> touching(cells.size(), 0);
+  double last_sd_n = 0.02;
+  for (const double growth_sd : {0.1, 0.3, 1.0, 3.0}) {
+    fingerpad::detail::FingertipWrench wrench(s.camera(), options);
+    test::Random random(7);
+    const double per_frame = growth_sd * last_sd_n / std::fabs(pressed.load[2]);
+    double lost_n = 0, sd_n = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      const double share = (std::min)(per_frame * frame, 1.0);
+      const double mpa = free.pressure_mpa + share * (pressed.pressure_mpa - free.pressure_mpa);
+      std::vector<Point2<double>> px;
+      for (std::size_t k = 0; k < cells.size(); ++k) {
+        const auto at = free.dots_mm[k] + share * (pressed.dots_mm[k] - free.dots_mm[k]);
+        const auto seen = pixel_of(s.camera(), at);
+        px.push_back({seen.x + 0.06 * random.normal(), seen.y + 0.06 * random.normal()});
+      }
+      const fingerpad::StridedView<const Point2<double>> dots(px.data(), rows, 1, 1);
+      const auto seen = wrench(dots, {touching.data(), rows, 1, 1}, mpa);
+      if (wrench.is_free(seen)) {
+        wrench.learn(dots, mpa);
+      }
+      if (frame > 0) {
+        REQUIRE(seen.ok());
+        sd_n = std::sqrt(seen.covariance(2, 2));
+        lost_n = seen.force_n.z - share * pressed.load[2];
+      }
+    }
+    CAPTURE(growth_sd, lost_n, sd_n);
+    CHECK(lost_n < 4 * sd_n);
+    last_sd_n = sd_n;
+  }
 }
 
 TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothing touches",

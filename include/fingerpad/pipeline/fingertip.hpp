@@ -89,10 +89,15 @@ class Fingertip {
       (*look_up_)(touch);
     }
     if (wrench_) {
-      if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact()) {
-        wrench_->learn(dots, pressure_mpa);
-      }
+      const bool begins = !wrench_->is_learnt();
       touch.wrench = (*wrench_)(dots, dots_->touching.view(), pressure_mpa);
+      if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact() &&
+          wrench_->is_free(touch.wrench)) {
+        wrench_->learn(dots, pressure_mpa);
+        if (begins) {
+          touch.wrench = (*wrench_)(dots, dots_->touching.view(), pressure_mpa);
+        }
+      }
     }
     if (dots_) {
       dots_->conclude(touch);

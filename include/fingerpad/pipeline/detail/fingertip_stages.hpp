@@ -137,7 +137,7 @@ struct FingertipLookUp {
 
 /// Six axes from the printed dots near the rim. Where they lie on the membrane is learnt from the
 /// first frames that touch nothing, and then kept, so that a slow touch is never taken for a free
-/// pad.
+/// pad: after the first, a frame whose force is beyond two standard deviations is not learnt from.
 struct FingertipWrench {
   struct Place {
     double arc_mm = 0, azimuth_rad = 0;
@@ -175,6 +175,17 @@ struct FingertipWrench {
         place.azimuth_rad += turn / place.frames;
       }
     });
+  }
+
+  bool is_learnt() const { return learnt > 0; }
+  /// Whether a frame without contact may be learnt from, by its force.
+  bool is_free(const WrenchResult& seen) const {
+    const double force[] = {seen.force_n.x, seen.force_n.y, seen.force_n.z};
+    bool is_small = seen.ok();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      is_small = is_small && square(force[k]) <= 4 * seen.covariance(k, k);
+    }
+    return !is_learnt() || is_small;
   }
 
   /// Of the dots that nothing touches.
