@@ -67,20 +67,20 @@ double range_of(const TaxelTable& table, std::size_t taxel, std::size_t from, st
   return most > least ? most - least : 0;
 }
 
-/// Whether most of the taxels beside one are pressed or let go in these samples, so that it should
+/// Whether all taxels beside one are pressed or let go in these samples, so that it should
 /// change, too.
 bool should_change(
     const TaxelTable& table, std::size_t taxel, std::size_t from, std::size_t to, double pressed) {
   const int row = static_cast<int>(taxel) / table.cols, col = static_cast<int>(taxel) % table.cols;
-  int balance = 0;
+  bool all = true;
   for (const auto& [i, j] :
        {std::pair(row - 1, col), {row + 1, col}, {row, col - 1}, {row, col + 1}}) {
     if (i >= 0 && j >= 0 && i < table.rows && j < table.cols) {
       const auto beside = static_cast<std::size_t>(i * table.cols + j);
-      balance += range_of(table, beside, from, to) > pressed ? 1 : -1;
+      all = all && range_of(table, beside, from, to) > pressed;
     }
   }
-  return balance >= 0;
+  return all;
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ void check_foam(const FoamRecording& recording, Findings& findings) {
     const std::size_t from = change.still_from, to = change.still_to;
     const bool never = !(change.sum > 0);
     if (!(most_pressed > 0) || ((never || to - from >= shortest) &&
-                                should_change(table, taxel, from, to, 0.1 * largest))) {
+                                should_change(table, taxel, from, to, 0.05 * largest))) {
       first_still = still == 0 ? taxel : first_still;
       ++still;
     }
