@@ -29,8 +29,9 @@ int main(int argc, char** argv) {
   std::printf("frame   force N                 moment N mm              true force N\n");
   for (int k = 0; k < recording.frames.size(); ++k) {
     const cv::Mat frame = recording.frames.next();
+    const auto seen = dots.of(k, frame);
     const auto touch =
-        fingertip(frame, dots.of(k, frame), recording.signals.pressure_mpa(k), 0.1 * k);
+        fingertip(frame, seen, recording.signals.pressure_mpa(k), 0.1 * k, dots.side());
     const auto &f = touch.wrench.force_n, &m = touch.wrench.moment_n_mm;
     std::printf("%5d %7.3f %7.3f %7.3f %8.2f %7.2f %7.2f", k, f.x, f.y, f.z, m.x, m.y, m.z);
     if (const auto truth = recording.true_forces.find(k); truth != recording.true_forces.end()) {

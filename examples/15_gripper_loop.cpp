@@ -36,8 +36,9 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_until(begin + std::chrono::duration<double>(time_s));
 
     const auto came = Clock::now();
+    const auto seen = dots.of(k, frame);
     const auto touch =
-        fingertip(frame, dots.of(k, frame), recording.signals.pressure_mpa(k), time_s);
+        fingertip(frame, seen, recording.signals.pressure_mpa(k), time_s, dots.side());
     // Recorded forces do not react to the grip, so only the stick ratio is used here. On a real
     // hand pass touch.slip itself; the grip force then follows the load.
     const auto answer = control(touch.slip.stick_ratio, touch.slip.update, time_s - last_s);

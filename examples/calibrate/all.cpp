@@ -23,7 +23,8 @@ struct About {
   DotPlate plate;
   PadSize pad;
   RimNoise rim;
-  json dots;  ///< of the printed grid, for sensor.json; null if there is none
+  json dots;       ///< of the printed grid, for sensor.json; null if there is none
+  json side_dots;  ///< of the rows around the rim, likewise
 };
 
 About read_about(const Path& file) {
@@ -42,6 +43,7 @@ About read_about(const Path& file) {
     about.rim.base_radius_mm = about.pad.base_radius_mm;
     about.rim.stress_free_height_mm = about.pad.stress_free_height_mm;
     about.dots = content.value("dots", json());
+    about.side_dots = content.value("side_dots", json());
     const json camera = content.value("camera", json::object());
     about.plate.is_srgb = camera.value("response", "linear") == "srgb";
     const std::string mosaic = camera.value("mosaic", "none");
@@ -121,6 +123,9 @@ bool all(const Path& folder) {
                                  {"depth", "pad/reference_depth.tiff"}};
   if (about.dots.is_object()) {
     known.sections["dots"] = about.dots;
+  }
+  if (about.side_dots.is_object()) {
+    known.sections["rim"]["side_dots"] = about.side_dots;
   }
   save(known, sensor);
   std::printf("written     %s\n", sensor.c_str());

@@ -81,7 +81,8 @@ Chain::Chain(Recording& recording, const Options& options)
       traction_(traction_step_of(recording, options)) {}
 
 void Chain::look(const DotGrid& dots_px, Scene& scene) {
-  FingertipFrame seen = (*fingertip_)(scene.frame, scene.image, dots_px, seconds(scene.time_s));
+  FingertipFrame seen =
+      (*fingertip_)(scene.frame, scene.image, dots_px, dots_.side(), seconds(scene.time_s));
   scene.depth_mm = seen.depth_mm;
   scene.contact_mask = seen.contact_mask;
   scene.dots = std::move(seen.dots);
@@ -106,7 +107,7 @@ Scene Chain::operator()(int frame, const cv::Mat& image) {
   }
   scene.image = image;
   scene.has_dots = dots_.present();
-  const DotGrid dots_px = scene.has_dots ? dots_.of(frame, image) : DotGrid();
+  const DotGrid dots_px = dots_.of(frame, image);
   if (fingertip_) {
     look(dots_px, scene);
   } else if (dots_.present()) {

@@ -154,6 +154,9 @@ const char* why_none(const std::vector<FrameRow>& rows) {
 void print_dots(const Chain& chain, const Writer& writer) {
   std::printf("dots         %td, %s\n", fingerpad::count_present(chain.dots().initial()),
               chain.dots().how().c_str());
+  if (const std::string side = chain.dots().side_how(); !side.empty()) {
+    std::printf("side dots    %s\n", side.c_str());
+  }
   if (!chain.dots().present()) {
     return;
   }

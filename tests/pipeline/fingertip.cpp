@@ -586,9 +586,9 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
         px.push_back({seen.x + 0.06 * random.normal(), seen.y + 0.06 * random.normal()});
       }
       const fingerpad::StridedView<const Point2<double>> dots(px.data(), rows, 1, 1);
-      const auto seen = wrench(dots, {touching.data(), rows, 1, 1}, mpa);
+      const auto seen = wrench(dots, {touching.data(), rows, 1, 1}, {}, {}, 1, mpa);
       if (wrench.is_free(seen)) {
-        wrench.learn(dots, mpa);
+        wrench.learn(dots, {}, mpa);
       }
       if (frame > 0) {
         REQUIRE(seen.ok());
@@ -600,6 +600,47 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
     CHECK(lost_n < 4 * sd_n);
     last_sd_n = sd_n;
   }
+}
+
+TEST_CASE("six axes from rows of dots around the rim, without a grid", "[chain]") {
+  FingertipOptions options = frames().options();
+  options.free_dots_mm = {};
+  options.wrench.emplace();
+  options.wrench->cap = {18.735, 11};
+  options.wrench->modulus_n_per_mm = 0.5;
+  options.side_dots = 144;
+  const auto rows = [&](double out_px, std::size_t lost) {  // `out_px` further out than when free
+    std::vector<fingerpad::Mark> dots;
+    for (int k = 0; k < 144; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 72;
+      const double rho_px = (k < 72 ? 17.2 : 15.4) / options.camera.pitch_mm + out_px;
+      dots.push_back({.px = {options.camera.center_x_px + rho_px * std::cos(angle),
+                             options.camera.center_y_px + rho_px * std::sin(angle)},
+                      .sd_px = 0.02});
+    }
+    std::fill_n(dots.begin(), lost,
+                fingerpad::Mark{.px = {test::nan, test::nan}, .sd_px = test::nan});
+    return dots;
+  };
+  Fingertip tip(options);
+  const auto free = free_frame();
+  const auto wrench_of = [&](const std::vector<fingerpad::Mark>& dots) {
+    return tip(free.red, free.green, fingerpad::StridedView<const fingerpad::Point2<double>>(),
+               0.016, test::nan, dots)
+        .wrench;
+  };
+  CHECK(wrench_of({}).status == fingerpad::WrenchStatus::too_few_marks);
+  const auto none = wrench_of(rows(0, 0));
+  REQUIRE(none.ok());
+  CHECK(none.marks == 144);
+  CHECK(norm(none.force_n) < 0.02);
+  CHECK(wrench_of(rows(0, 30)).marks == 114);
+  // the wall bulges: the rim tells of a press, which is not learnt as the free pad, though no
+  // region of contact is seen
+  const auto first = wrench_of(rows(0.3, 0)), second = wrench_of(rows(0.3, 0));
+  REQUIRE(first.ok());
+  CHECK(first.force_n.z < -4 * std::sqrt(first.covariance(2, 2)));
+  CHECK(second.force_n.z == Approx(first.force_n.z).epsilon(1e-3));
 }
 
 TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothing touches",

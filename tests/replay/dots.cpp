@@ -245,6 +245,61 @@ TEST_CASE("what hides a part of the frame hides only dots there") {
   CHECK(after.wrong == 0);
 }
 
+TEST_CASE("rows of dots around the rim are found beside the grid, and given with each frame") {
+  const DotGrid grid = press().source().initial();
+  replay::Sensor sensor = press().recording.sensor;
+  sensor.rim->side_rows = {{72, 1.5, 0.64, 0}, {72, 3, 0.64, CV_PI / 72}};
+  std::vector<cv::Vec2d> painted;
+  const auto paint = [&](const cv::Mat& from) {
+    cv::Mat image = from.clone();
+    painted.clear();
+    for (int k = 0; k < 144; ++k) {
+      const double angle = (k < 72 ? 0.0 : CV_PI / 72) + 2 * CV_PI * k / 72,
+                   rho = k < 72 ? 222 : 205;
+      const cv::Vec2d at(239.5 + rho * std::cos(angle), 239.5 + rho * std::sin(angle));
+      const bool is_free = std::none_of(grid.begin(), grid.end(), [&](const cv::Vec2d& dot) {
+        return is_present(dot) && cv::norm(dot - at) < 12;
+      });
+      painted.push_back(is_free ? at : cv::Vec2d::all(std::nan("")));
+      if (is_free) {
+        cv::circle(image, cv::Point(cvRound(16 * at[0]), cvRound(16 * at[1])), 64,
+                   cv::Scalar::all(image.depth() == CV_16U ? 2560 : 10), cv::FILLED, cv::LINE_AA,
+                   4);
+      }
+    }
+    return image;
+  };
+  const cv::Mat reference = paint(press().recording.reference);
+  replay::DotSource source(bundled, sensor, reference, press().recording.reference_depth, 0);
+  INFO(source.side_how());
+  const DotGrid free_pad = source.initial(), seen = source.of(0, paint(press().frames[0]));
+  for (const DotGrid& found : {free_pad, seen}) {  // the grid is the same
+    REQUIRE(found.size() == grid.size());
+    CHECK(100 * fingerpad::count_present(found) > 97 * fingerpad::count_present(grid));
+    for (int k = 0; k < static_cast<int>(grid.total()); ++k) {
+      const cv::Vec2d& dot = found(k / grid.cols, k % grid.cols);
+      CHECK((!is_present(dot) || cv::norm(dot - grid(k / grid.cols, k % grid.cols)) < 0.2));
+    }
+  }
+  REQUIRE(source.side().size() == 144);
+  int found = 0, drawn = 0;
+  for (std::size_t k = 0; k < 144; ++k) {
+    const auto& dot = source.side()[k];
+    found += is_present(cv::Vec2d(dot.px.x, dot.px.y)) ? 1 : 0;
+    drawn += is_present(painted[k]) ? 1 : 0;
+    if (is_finite(dot.px)) {  // none of the grid's dots
+      CHECK(cv::norm(cv::Vec2d(dot.px.x, dot.px.y) - painted[k]) < 0.3);
+      CHECK((dot.sd_px > 0 && dot.sd_px < 0.3));
+    }
+  }
+  CHECK(found > 0.9 * drawn);
+  CHECK(source.side_how() == std::to_string(drawn) + " around the rim");
+
+  sensor.rim->side_rows[1].count = 41;
+  const replay::DotSource other(bundled, sensor, reference, press().recording.reference_depth, 0);
+  CHECK(other.side_how().find("none: the row of side dots at 3 mm from the rim shows") == 0);
+}
+
 TEST_CASE("noise alone is no print") {
   cv::Mat noise(press().recording.reference.size(), CV_8UC3);
   cv::theRNG().state = 20110801;

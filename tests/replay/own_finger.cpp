@@ -198,6 +198,7 @@ TEST_CASE("a finger of one's own: one command takes all that there is", "[own]")
   CHECK_THROWS_AS(calibrate::all(finger), replay::Failure);  // about.json is missing
   std::ofstream(finger / "about.json")
       << R"({"refractive_index": 1.33, "base_radius_mm": 18.7, "touch_ball_radius_mm": 10,)"
+      << R"( "side_dots": {"count": 72, "arc_mm": [2, 4], "diameter_mm": 0.5, "first_angle_rad": [0, 1]},)"
       << R"( "target": {"rows": 9, "cols": 9, "pitch_mm": 3, "raised_mm": 10}})";
   CHECK_FALSE(calibrate::all(finger));  // without the raised target there is no camera
   replay::write_png(finger / "plate_raised/0.png", target(10));
@@ -207,6 +208,9 @@ TEST_CASE("a finger of one's own: one command takes all that there is", "[own]")
   CHECK(sensor.pad.apex_height_mm == Approx(true_meridian().front().y).margin(0.02));
   CHECK(sensor.light.has_value());
   CHECK(sensor.contact.has_value());
+  REQUIRE(sensor.rim->side_rows.size() == 2);
+  CHECK(sensor.rim->side_rows[1].arc_mm == 4);
+  CHECK(sensor.rim->side_rows[1].first_angle_rad == 1);
   // a recording of its use needs no sensor.json of its own
   const fs::path use = finger / "use";
   fs::create_directories(use / "frames");

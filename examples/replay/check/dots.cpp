@@ -128,14 +128,19 @@ void check_names(const std::string& place, const std::map<int, DotGrid>& dots, F
 
 void check_print(const Recording& recording, Findings& findings) {
   const Dots& print = *recording.sensor.dots;
-  fingerpad::DotFinderOptions options = print_of(recording.sensor, recording.reference_depth);
+  const auto side = side_dots_of(recording.sensor, recording.reference);
+  if (side && !side->ok()) {
+    findings.push_back(
+        {"sensor.json, rim.side_dots", side->refusal(),
+         "Give count, arc_mm, diameter_mm and first_angle_rad as they are printed."});
+  }
+  fingerpad::DotFinderOptions options = print_of(recording.sensor, recording.reference_depth, side);
   const double expected_px = options.pattern.pitch_px;
   const int wanted = print.rows * print.cols;
   options.pattern = {};
   const fingerpad::DotFinder finder(recording.reference, options);
   if (!finder.ok()) {
-    findings.push_back({recording.sensor.reference_frame,
-                        "the image shows " + finder.refusal(),
+    findings.push_back({recording.sensor.reference_frame, "the image shows " + finder.refusal(),
                         "Use a sharp image of the free pad, or remove \"dots\" from sensor.json."});
     return;
   }

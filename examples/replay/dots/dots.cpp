@@ -3,6 +3,8 @@
 #include "replay/dots/dots.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
@@ -79,7 +81,23 @@ fingerpad::DotFinder finder_of(const std::filesystem::path& folder,
 
 }  // namespace
 
-fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>& reference_depth) {
+std::optional<fingerpad::SideDots> side_dots_of(const Sensor& sensor, const cv::Mat& free_frame) {
+  constexpr double nearest_mm = 1.5;  // nearer, the clamp bends the sheet and the rim blurs a dot
+  std::vector<fingerpad::SideRow> rows;
+  if (sensor.rim) {
+    std::copy_if(sensor.rim->side_rows.begin(), sensor.rim->side_rows.end(),
+                 std::back_inserter(rows),
+                 [](const fingerpad::SideRow& row) { return row.arc_mm >= nearest_mm; });
+  }
+  if (rows.empty()) {
+    return std::nullopt;
+  }
+  return fingerpad::SideDots(light_of(free_frame), sensor.camera, sensor.pad.base_radius_mm, rows);
+}
+
+fingerpad::DotFinderOptions print_of(const Sensor& sensor,
+                                     const cv::Mat_<float>& reference_depth,
+                                     const std::optional<fingerpad::SideDots>& side) {
   fingerpad::DotFinderOptions options;
   options.where = cv::Mat_<uchar>(reference_depth.size(), uchar{0});
   std::vector<float> depths_mm;
@@ -89,6 +107,12 @@ fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>
         options.where(i, j) = 1;
         depths_mm.push_back(reference_depth(i, j));
       }
+    }
+  }
+  for (const auto& dot : side ? side->free_px() : std::vector<fingerpad::Point2<double>>()) {
+    if (is_present(dot)) {
+      cv::circle(options.where, cv::Point(cvRound(dot.x), cvRound(dot.y)), cvCeil(side->reach_px()),
+                 0, cv::FILLED);
     }
   }
   if (depths_mm.empty()) {
@@ -126,9 +150,10 @@ DotSource::DotSource(const std::filesystem::path& folder,
                      const cv::Mat& reference_image,
                      const cv::Mat_<float>& reference_depth,
                      int frame_count) {
+  side_ = side_dots_of(sensor, reference_image);
   std::optional<fingerpad::DotFinder> finder;
   if (sensor.dots) {
-    finder = finder_of(folder, reference_image, print_of(sensor, reference_depth));
+    finder = finder_of(folder, reference_image, print_of(sensor, reference_depth, side_));
   }
   const bool found = finder && finder->ok();
   DotGrid free;
@@ -203,9 +228,32 @@ DotGrid DotSource::followed(const cv::Mat& image) {
   return follower_->restart(light, dots).ok() ? dots : rough;
 }
 
+std::string DotSource::side_how() const {
+  if (!side_ || !side_->ok()) {
+    return side_ ? "none: " + side_->refusal() : "";
+  }
+  const auto px = side_->free_px();
+  return std::to_string(std::count_if(px.begin(), px.end(), [](auto p) { return is_present(p); })) +
+         " around the rim";
+}
+
+void DotSource::look_for_side(const cv::Mat& image) {
+  (void)(*side_)(light_of(image));
+  side_marks_.clear();
+  for (std::size_t k = 0; k < side_->px().size(); ++k) {
+    side_marks_.push_back({.px = side_->px()[k], .sd_px = side_->sd_px()[k]});
+  }
+}
+
 DotGrid DotSource::of(int frame, const cv::Mat& image) {
+  if (side_ && side_->ok()) {
+    look_for_side(image);
+  }
   if (finder_) {
     return follower_ ? followed(image) : found(image);
+  }
+  if (!present()) {
+    return {};
   }
   const auto listed = listed_.find(frame);
   return listed == listed_.end() ? no_dots(initial_.size()) : listed->second.clone();

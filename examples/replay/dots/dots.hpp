@@ -5,15 +5,20 @@
 // if it exists. Otherwise the library's dot_finder.hpp finds them on the free pad and
 // dot_follower.hpp follows them, if sensor.json describes the print. In a dots-only recording the
 // finder finds them in every frame: dots behind an elastic pad need not move like their neighbours.
+// Rows of dots around the rim are those of side_dots.hpp.
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/dots/dot_finder.hpp"
 #include "fingerpad/dots/dot_follower.hpp"
+#include "fingerpad/dots/side_dots.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "replay/dots/grid.hpp"
 #include "replay/io/recording.hpp"
 #include "replay/io/sensor.hpp"
@@ -51,6 +56,12 @@ class DotSource {
   /// Whether the dots of a dots-only recording are lighter than their background.
   bool bright() const { return finder_ ? finder_->pattern().bright.value_or(false) : bright_; }
 
+  /// The dots of rows around the rim in the frame of the last of(), NaN where lost. Empty if
+  /// sensor.json has no such rows, or the free pad does not show them.
+  std::span<const fingerpad::Mark> side() const { return side_marks_; }
+  /// "216 around the rim", or why there are none; "" if sensor.json has no such rows.
+  std::string side_how() const;
+
   /// The dots of a frame; all NaN for a frame that is not in dots.csv. Without dots.csv the dots
   /// are tracked from frame to frame, so call it in ascending order of frames.
   DotGrid of(int frame, const cv::Mat& image);
@@ -61,6 +72,7 @@ class DotSource {
   void follow(fingerpad::DotFinder finder, const DotGrid& free);
   DotGrid found(const cv::Mat& image);
   DotGrid followed(const cv::Mat& image);
+  void look_for_side(const cv::Mat& image);
 
   std::string how_ = "none";
   DotGrid initial_;
@@ -68,10 +80,18 @@ class DotSource {
   std::map<int, DotGrid> listed_;
   std::optional<fingerpad::DotFinder> finder_;
   std::optional<fingerpad::DotFollower> follower_;
+  std::optional<fingerpad::SideDots> side_;
+  std::vector<fingerpad::Mark> side_marks_;
 };
 
+/// The rows around the rim on the free pad that are not too near to it; empty if sensor.json has
+/// none.
+std::optional<fingerpad::SideDots> side_dots_of(const Sensor& sensor, const cv::Mat& free_frame);
+
 /// The print to find on the free pad: section "dots" of sensor.json, scaled to the pad's median
-/// depth. Only pixels with a depth are searched.
-fingerpad::DotFinderOptions print_of(const Sensor& sensor, const cv::Mat_<float>& reference_depth);
+/// depth. Only pixels with a depth are searched, and not where `side` has its dots.
+fingerpad::DotFinderOptions print_of(const Sensor& sensor,
+                                     const cv::Mat_<float>& reference_depth,
+                                     const std::optional<fingerpad::SideDots>& side);
 
 }  // namespace replay

@@ -171,6 +171,31 @@ bool names_depth(const Section& root) {
   return root.has("reference") && root.at("reference").contains("depth");
 }
 
+std::vector<fingerpad::SideRow> read_side_rows(const Section& rim) {
+  constexpr std::size_t most = 20;
+  const Section section = rim.section(
+      "side_dots", {{"count", "number of dots of each row"},
+                    {"arc_mm", "list of the rows' arcs from the rim, mm, growing"},
+                    {"diameter_mm", "diameter of a dot, mm"},
+                    {"first_angle_rad", "list of the azimuths of the rows' first dots"}});
+  const auto arcs = section.numbers<most>("arc_mm");
+  const auto angles = section.numbers<most>("first_angle_rad");
+  const std::size_t count = section.at("arc_mm").size();
+  if (section.at("first_angle_rad").size() != count) {
+    section.refuse("arc_mm and first_angle_rad must have one number for each row");
+  }
+  std::vector<fingerpad::SideRow> rows;
+  for (std::size_t r = 0; r < count; ++r) {
+    rows.push_back(
+        {section.positive_integer("count"), arcs[r], section.positive("diameter_mm"), angles[r]});
+    section.check([&] { fingerpad::require(rows.back()); });
+    if (r > 0 && !(arcs[r] > arcs[r - 1])) {
+      section.refuse("arc_mm must grow");
+    }
+  }
+  return rows;
+}
+
 Rim read_rim(const Section& root) {
   const Section section = root.section(
       "rim",
@@ -179,7 +204,7 @@ Rim read_rim(const Section& root) {
        {"membrane_modulus_sd_n_per_mm", "its standard deviation, N/mm; 1 % if absent"},
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
        {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
-       {"side_dots", "rows of side dots in the pictures, which nothing here reads"}});
+       {"side_dots", "rows of dots around the rim, which are found in the pictures"}});
   Rim rim;
   if (section.has("membrane_modulus_n_per_mm")) {
     rim.membrane_modulus_n_per_mm = section.positive("membrane_modulus_n_per_mm");
@@ -195,6 +220,9 @@ Rim read_rim(const Section& root) {
     section.check([&] {
       fingerpad::require("rim", {{"mooney_share", rim.mooney_share, fingerpad::within(0, 1)}});
     });
+  }
+  if (section.has("side_dots")) {
+    rim.side_rows = read_side_rows(section);
   }
   return rim;
 }

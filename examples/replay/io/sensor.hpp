@@ -8,9 +8,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/pad_light.hpp"
+#include "fingerpad/dots/side_dots.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/optics/camera.hpp"
@@ -44,6 +46,7 @@ struct Rim {
   std::optional<double> membrane_modulus_sd_n_per_mm;
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
   double mooney_share = 0;                            ///< C2 / (C1 + C2) of its rubber
+  std::vector<fingerpad::SideRow> side_rows;          ///< of dots around the rim; may be empty
 };
 
 /// The measure of a contact by which a force is looked up.

@@ -90,7 +90,10 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   if (sensor.force) {
     set_look_up(*sensor.force, options);
   }
-  if (lacking_for_wrench(recording).empty() && !free_dots_px.empty()) {
+  for (const auto& row : sensor.rim ? sensor.rim->side_rows : std::vector<fingerpad::SideRow>()) {
+    options.side_dots += row.count;
+  }
+  if (lacking_for_wrench(recording).empty() && (options.side_dots > 0 || !free_dots_px.empty())) {
     const double radius_mm = sensor.pad.base_radius_mm;
     options.wrench.emplace();
     options.wrench->cap = {radius_mm,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,7 +57,8 @@ class RecordedFingertip {
   fingerpad::FingertipResult operator()(const cv::Mat& frame,
                                         const DotGrid& dots_px,
                                         double pressure_mpa,
-                                        double time_s);
+                                        double time_s,
+                                        std::span<const fingerpad::Mark> side_dots = {});
 
  private:
   struct Whole;

@@ -66,11 +66,13 @@ class Step : public FingertipStep {
   FingertipFrame operator()(int frame,
                             const cv::Mat& image,
                             const DotGrid& dots_px,
+                            std::span<const fingerpad::Mark> side_dots,
                             double time_s) override {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const FingertipResult touch = with_colors(image, [&](const auto& red, const auto& green) {
-      return fingertip_(red, green, dots_px, recording_.signals.pressure_mpa(frame), time_s);
+      return fingertip_(red, green, dots_px, recording_.signals.pressure_mpa(frame), time_s,
+                        side_dots);
     });
     FingertipFrame out;
     out.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();

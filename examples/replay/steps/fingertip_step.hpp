@@ -28,6 +28,7 @@ class FingertipStep {
   virtual FingertipFrame operator()(int frame,
                                     const cv::Mat& image,
                                     const DotGrid& dots_px,
+                                    std::span<const fingerpad::Mark> side_dots,
                                     double time_s) = 0;
 };
 

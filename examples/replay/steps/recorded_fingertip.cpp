@@ -13,12 +13,14 @@ RecordedFingertip::RecordedFingertip(const FingertipSettings& settings)
     : whole_(new Whole{fingerpad::Fingertip(settings.options)}) {}
 RecordedFingertip::~RecordedFingertip() = default;
 
-fingerpad::FingertipResult RecordedFingertip::operator()(const cv::Mat& frame,
-                                                         const DotGrid& dots_px,
-                                                         double pressure_mpa,
-                                                         double time_s) {
+fingerpad::FingertipResult RecordedFingertip::operator()(
+    const cv::Mat& frame,
+    const DotGrid& dots_px,
+    double pressure_mpa,
+    double time_s,
+    std::span<const fingerpad::Mark> side_dots) {
   return with_colors(frame, [&](const auto& red, const auto& green) {
-    return whole_->fingertip(red, green, dots_px, pressure_mpa, time_s);
+    return whole_->fingertip(red, green, dots_px, pressure_mpa, time_s, side_dots);
   });
 }
 

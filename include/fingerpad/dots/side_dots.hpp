@@ -275,7 +275,7 @@ class SideDots {
         }
       }
       const double share = size(m) / usual, tone = m.contrast / dark;
-      const bool alike = share > 0.6 && share < 1.6 && tone > 0.6 && tone < 1.5;
+      const bool alike = share > 0.7 && share < 1.4 && tone > 0.6 && tone < 1.5;
       const Point off = xs.size() < 3 ? missing() : m.news - Point{median(xs), median(ys)};
       strange[k] = !alike || !(norm(off) < 0.15 * m.next_px) ? 1 : 0;
     }

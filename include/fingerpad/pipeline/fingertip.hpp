@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <type_traits>
+#include <utility>
 
 #include "fingerpad/pipeline/detail/fingertip_stages.hpp"
 #include "fingerpad/pipeline/detail/frame_samples.hpp"
@@ -58,20 +60,22 @@ class Fingertip {
       find_flat_area_.emplace(camera_, red_.rows, red_.cols,
                               o.flat_area.value_or(FlatAreaOptions{}));
     }
-    if (dots_ && o.wrench) {
+    if ((dots_ || o.side_dots > 0) && o.wrench) {
       wrench_.emplace(o.camera, o);
     }
   }
 
   /// Processes one frame: red and green of 8 or 16 bit, the printed dots in px (NaN: not found),
-  /// MPa above the surrounding air, and the time in s of the stick ratio; NaN: not known. What no
-  /// stage takes may be left out.
+  /// MPa above the surrounding air, and the time in s of the stick ratio; NaN: not known. Of the
+  /// side dots, in the same order in each frame, place and sd in px are read (NaN: not found). What
+  /// no stage takes may be left out.
   template <grid Red, grid Green, dot_grid DotsPx = StridedView<const Point2<double>>>
   FingertipResult operator()(const Red& red,
                              const Green& green,
                              const DotsPx& dots_px = {},
                              double pressure_mpa = not_a_number<double>(),
-                             double time_s = not_a_number<double>()) {
+                             double time_s = not_a_number<double>(),
+                             std::span<const Mark> side_dots = {}) {
     FingertipResult touch;
     const auto dots = as_view(dots_px);
     if (!take_samples(as_view(red), as_view(green)) ||
@@ -89,15 +93,7 @@ class Fingertip {
       (*look_up_)(touch);
     }
     if (wrench_) {
-      const bool begins = !wrench_->is_learnt();
-      touch.wrench = (*wrench_)(dots, dots_->touching.view(), pressure_mpa);
-      if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact() &&
-          wrench_->is_free(touch.wrench)) {
-        wrench_->learn(dots, pressure_mpa);
-        if (begins) {
-          touch.wrench = (*wrench_)(dots, dots_->touching.view(), pressure_mpa);
-        }
-      }
+      measure_wrench(dots, side_dots, pressure_mpa, touch);
     }
     if (dots_) {
       dots_->conclude(touch);
@@ -184,6 +180,32 @@ class Fingertip {
     }
   }
 
+  template <class Dots>
+  void measure_wrench(const Dots& dots_px,
+                      std::span<const Mark> side_dots,
+                      double pressure_mpa,
+                      FingertipResult& touch) {
+    const auto touching =
+        dots_ ? std::as_const(dots_->touching).view() : StridedView<const std::uint8_t>();
+    const auto measure = [&] {
+      touch.wrench = (*wrench_)(dots_px, touching, side_dots, std::as_const(mask_).view(),
+                                pad_->step, pressure_mpa);
+    };
+    measure();
+    if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact() &&
+        (!touch.wrench.ok() || wrench_->is_free(touch.wrench))) {
+      wrench_->learn(dots_px, side_dots, pressure_mpa);
+      if (!touch.wrench.ok()) {
+        measure();
+      }
+    }
+  }
+
+  /// Beyond four standard deviations.
+  static bool presses(const WrenchResult& wrench) {
+    return wrench.ok() && -wrench.force_n.z > 4 * std::sqrt(wrench.covariance(2, 2));
+  }
+
   /// An edge that may lie so far off that a quarter of the area is in doubt; or what the rim says,
   /// which has not seen the contact: a press beyond four standard deviations where no region is
   /// found, or an area on which the pressure alone exceeds the press by a quarter. On an object
@@ -195,7 +217,7 @@ class Fingertip {
     return contact.in_contact() ? 4 * contact.area_sd_mm2 > contact.area_mm2 ||
                                       (touch.wrench.ok() && pressure_mpa * contact.area_mm2 >
                                                                 1.25 * (press_n + 2 * sd_n))
-                                : touch.wrench.ok() && press_n > 4 * sd_n;
+                                : presses(touch.wrench);
   }
 
   FingertipStatus judge(FingertipResult& touch, double pressure_mpa) const {

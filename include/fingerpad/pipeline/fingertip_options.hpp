@@ -56,10 +56,11 @@ struct FingertipOptions {
   std::optional<Shear<>> shear = {};  ///< empty: not used
   bool shear_by_depth = false;        ///< looks up shear by mm of depth instead of mm^2 of area
 
-  /// Six axes from the printed dots near the rim; the base radius, rubber and its modulus must be
+  /// Six axes from the dots near the rim; the base radius, rubber and its modulus must be
   /// known; empty: not used. Needs the pressure, and begins with a frame that touches nothing.
   std::optional<WrenchOptions> wrench = {};
-  double dot_sd_px = 0.06;  ///< of a dot's place in the picture, > 0
+  double dot_sd_px = 0.06;  ///< of a printed dot's place in the picture, > 0
+  Index side_dots = 0;      ///< dots of rows around the rim, which only the six axes take; >= 0
 };
 
 /// The worst of a frame; the flags of FingertipResult tell of which stages.
@@ -101,7 +102,7 @@ struct [[nodiscard]] FingertipResult {
   /// depth.
   ForceResult<double> normal;
   ShearResult<double> shear;  ///< from the curve
-  WrenchResult wrench;        ///< six axes from the printed dots near the rim
+  WrenchResult wrench;        ///< six axes from the dots near the rim
 
   bool ok() const { return status == FingertipStatus::ok; }
 };

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fingerpad/pipeline/detail/frame_samples.hpp"
@@ -135,9 +136,10 @@ struct FingertipLookUp {
   }
 };
 
-/// Six axes from the printed dots near the rim. Where they lie on the membrane is learnt from the
-/// first frames that touch nothing, and then kept, so that a slow touch is never taken for a free
-/// pad: after the first, a frame whose force is beyond two standard deviations is not learnt from.
+/// Six axes from the dots near the rim: of a printed grid, and of rows around it. Where they lie on
+/// the membrane is learnt from the first frames that touch nothing, and then kept, so that a slow
+/// touch is never taken for a free pad: after the first, a frame whose force is beyond two standard
+/// deviations is not learnt from.
 struct FingertipWrench {
   struct Place {
     double arc_mm = 0, azimuth_rad = 0;
@@ -147,6 +149,8 @@ struct FingertipWrench {
 
   Wrench<> wrench;
   OwnedGrid<Place> places;
+  OwnedGrid<Place> side_places;  // one column
+  OwnedGrid<std::uint8_t> side_touching;
   ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
@@ -154,19 +158,24 @@ struct FingertipWrench {
   FingertipWrench(const Camera<double>& camera, const FingertipOptions& o)
       : wrench(camera, *o.wrench),
         places(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
+        side_places((require("FingertipOptions",
+                             {{"dot_sd_px", o.dot_sd_px, positive},
+                              {"side_dots", o.side_dots, within(0, 100000)}}),
+                     o.side_dots),
+                    1),
+        side_touching(side_places.rows, 1),
         dot_sd_px(o.dot_sd_px) {
-    require("FingertipOptions", {{"dot_sd_px", o.dot_sd_px, positive}});
-    marks = ReservedVector<fingerpad::Mark>(places.cells.size());
+    marks = ReservedVector<fingerpad::Mark>(places.cells.size() + side_places.cells.size());
   }
 
   /// Learns from a frame that touches nothing.
   template <class Dots>
-  void learn(const Dots& dots_px, double pressure_mpa) {
+  void learn(const Dots& dots_px, std::span<const fingerpad::Mark> side_dots, double pressure_mpa) {
     if (learnt == free_frames || !wrench.begin(pressure_mpa)) {
       return;
     }
     ++learnt;
-    for_each(dots_px, [&](Place& place, const Point2<double>& px) {
+    const auto add = [&](Place& place, const Point2<double>& px) {
       if (const auto found = wrench.place_in_free_picture(px)) {
         ++place.frames;
         const double turn =
@@ -174,7 +183,9 @@ struct FingertipWrench {
         place.arc_mm += (found->arc_mm - place.arc_mm) / place.frames;
         place.azimuth_rad += turn / place.frames;
       }
-    });
+    };
+    for_each(dots_px, add);
+    for_each_side(side_dots, [&](Place& place, const fingerpad::Mark& dot) { add(place, dot.px); });
   }
 
   bool is_learnt() const { return learnt > 0; }
@@ -188,24 +199,47 @@ struct FingertipWrench {
     return !is_learnt() || is_small;
   }
 
-  /// Of the dots that nothing touches.
+  /// Of the dots that nothing touches. `mask` has the contact in samples of `step` pixels.
   template <class Dots>
   WrenchResult operator()(const Dots& dots_px,
                           const StridedView<const std::uint8_t>& touching,
+                          std::span<const fingerpad::Mark> side_dots,
+                          const StridedView<const std::uint8_t>& mask,
+                          int step,
                           double pressure_mpa) {
     marks.clear();
-    const std::uint8_t* touched = touching.data();
-    for_each(dots_px, [&](const Place& place, const Point2<double>& px) {
-      if (place.frames > 0 && *touched == 0) {
-        const double sd_px = dot_sd_px * std::sqrt(1 + 1.0 / place.frames);
-        marks.push_back({place.arc_mm, place.azimuth_rad, px, sd_px});
-      }
-      ++touched;
+    const LazyView sides(side_places.rows, 1, [&](Index k, Index) {
+      constexpr double none = not_a_number<double>();
+      const auto at = static_cast<std::size_t>(k);
+      const auto px = at < side_dots.size() ? side_dots[at].px : Point2<double>{none, none};
+      return Point2<double>{sampled_px(px.x, step), sampled_px(px.y, step)};
     });
+    (void)contact_at_dots(sides, mask, side_touching.view());
+    const std::uint8_t* touched = side_touching.cells.data();
+    const auto add = [&](const Place& place, const Point2<double>& px, double sd_px) {
+      if (*touched++ == 0 && place.frames > 0) {
+        marks.push_back(
+            {place.arc_mm, place.azimuth_rad, px, sd_px * std::sqrt(1 + 1.0 / place.frames)});
+      }
+    };
+    for_each_side(side_dots, [&](const Place& place, const fingerpad::Mark& dot) {
+      add(place, dot.px, dot.sd_px);
+    });
+    touched = touching.data();
+    for_each(dots_px,
+             [&](const Place& place, const Point2<double>& px) { add(place, px, dot_sd_px); });
     return wrench(marks, pressure_mpa);
   }
 
  private:
+  template <class Use>
+  void for_each_side(std::span<const fingerpad::Mark> side_dots, const Use& use) {
+    const std::size_t count = (std::min)(side_dots.size(), side_places.cells.size());
+    for (std::size_t k = 0; k < count; ++k) {
+      use(side_places.cells[k], side_dots[k]);
+    }
+  }
+
   template <class Dots, class Use>
   void for_each(const Dots& dots_px, const Use& use) {
     using Traits = point_traits<cell_t<Dots>>;
