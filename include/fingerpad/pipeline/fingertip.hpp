@@ -193,7 +193,7 @@ class Fingertip {
     };
     measure();
     if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact() &&
-        (!touch.wrench.ok() || wrench_->is_free(touch.wrench))) {
+        detail::FingertipWrench::is_free(touch.wrench)) {
       wrench_->learn(dots_px, side_dots, pressure_mpa);
       if (!touch.wrench.ok()) {
         measure();

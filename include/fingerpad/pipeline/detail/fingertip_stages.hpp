@@ -188,15 +188,15 @@ struct FingertipWrench {
     for_each_side(side_dots, [&](Place& place, const fingerpad::Mark& dot) { add(place, dot.px); });
   }
 
-  bool is_learnt() const { return learnt > 0; }
-  /// Whether a frame without contact may be learnt from, by its force.
-  bool is_free(const WrenchResult& seen) const {
+  /// Whether a frame without contact may be learnt from: its force is within two standard
+  /// deviations, or too little has been learnt to tell.
+  static bool is_free(const WrenchResult& seen) {
     const double force[] = {seen.force_n.x, seen.force_n.y, seen.force_n.z};
     bool is_small = seen.ok();
     for (Eigen::Index k = 0; k < 3; ++k) {
       is_small = is_small && square(force[k]) <= 4 * seen.covariance(k, k);
     }
-    return !is_learnt() || is_small;
+    return is_small || seen.status == WrenchStatus::too_few_marks;
   }
 
   /// Of the dots that nothing touches. `mask` has the contact in samples of `step` pixels.
