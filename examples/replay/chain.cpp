@@ -71,6 +71,17 @@ void describe_depth(Scene& scene) {
   scene.depth_max_mm = valid > 0 ? top : not_known;
 }
 
+double step_in_pad(const Recording& recording, const cv::Mat& image) {
+  return step_between_blocks(image, cv::Mat_<uchar>(recording.reference_depth > 0));
+}
+
+/// What was calibrated on compressed pictures may measure those that are compressed as much.
+double compressed_step_of(const Recording& recording) {
+  return recording.sensor.dots_only
+             ? compressed_step
+             : compressed_step * std::max(1.0, step_in_pad(recording, recording.reference));
+}
+
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
@@ -78,7 +89,8 @@ Chain::Chain(Recording& recording, const Options& options)
       dots_(dots_of(recording, options)),
       fingertip_(fingertip_step_of(recording, options, dots_.initial())),
       stick_(dots_.initial().size(), recording.sensor.stick),
-      traction_(traction_step_of(recording, options)) {}
+      traction_(traction_step_of(recording, options)),
+      compressed_step_(compressed_step_of(recording)) {}
 
 void Chain::look(const DotGrid& dots_px, Scene& scene) {
   FingertipFrame seen =
@@ -88,8 +100,7 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.dots = std::move(seen.dots);
   scene.touch = seen.touch;
   scene.has_depth = true;
-  const cv::Mat_<uchar> pad(recording_.reference_depth > 0);
-  scene.compressed = step_between_blocks(scene.image, pad) > compressed_step;
+  scene.compressed = step_in_pad(recording_, scene.image) > compressed_step_;
   scene.has_rim = seen.has_rim;
   scene.has_curves = recording_.sensor.force.has_value();
   describe_depth(scene);

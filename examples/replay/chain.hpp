@@ -36,6 +36,7 @@ class Chain {
   std::unique_ptr<FingertipStep> fingertip_;  ///< null for a dots-only recording
   StickStep stick_;                           ///< for dots-only recordings
   TractionStep traction_;                     ///< empty if the recording lacks data for it
+  double compressed_step_;  ///< between blocks of a frame that was compressed, the reference not
   std::vector<double> frame_ms_;
 };
 
