@@ -197,15 +197,13 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
   outcome.plots.push_back(plot);
 }
 
-/// Mean apex heights of the free pad; frames whose pressures differ by less than 2 % are averaged.
-std::vector<fingerpad::FreeApex> apexes_of(const Path& recording, double noise_mm) {
+std::vector<fingerpad::FreeApex> read_apexes(const Path& recording, double noise_mm) {
   const Columns table(recording / "apex.csv");
   if (!table.has("frame") || !table.has("apex_mm")) {
     replay::fail(recording / "apex.csv", "must have the columns frame and apex_mm");
   }
   const auto signals = replay::read_signals(recording / "signals.csv", any_frame);
-  std::vector<fingerpad::FreeApex> levels;
-  std::vector<double> frames;
+  std::vector<fingerpad::FreeApex> apexes;
   for (std::size_t k = 0; k < table.rows(); ++k) {
     const int frame = static_cast<int>(table.number(k, "frame"));
     const double pressure_mpa = signals.pressure_mpa(frame);
@@ -213,18 +211,40 @@ std::vector<fingerpad::FreeApex> apexes_of(const Path& recording, double noise_m
       replay::fail(recording / "signals.csv",
                    "frame " + std::to_string(frame) + " has no pressure above 0");
     }
+    apexes.push_back({pressure_mpa, table.number(k, "apex_mm"), noise_mm});
+  }
+  return apexes;
+}
+
+/// Leaves out where something touches the pad: its apex is lower than at a lower pressure. Returns
+/// how many that are.
+std::size_t drop_touched(std::vector<fingerpad::FreeApex>& apexes) {
+  const std::vector<fingerpad::FreeApex> all = apexes;
+  return std::erase_if(apexes, [&](const auto& apex) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& other) {
+      return other.pressure_mpa <= apex.pressure_mpa &&
+             other.apex_mm > apex.apex_mm + 5 * (apex.sd_mm + other.sd_mm);
+    });
+  });
+}
+
+/// Means of frames whose pressures differ by less than 2 %.
+std::vector<fingerpad::FreeApex> means_by_pressure(const std::vector<fingerpad::FreeApex>& apexes) {
+  std::vector<fingerpad::FreeApex> levels;
+  std::vector<double> frames;
+  for (const auto& apex : apexes) {
     const auto same = std::find_if(levels.begin(), levels.end(), [&](const auto& level) {
-      return std::abs(pressure_mpa / level.pressure_mpa - 1) < 0.02;
+      return std::abs(apex.pressure_mpa / level.pressure_mpa - 1) < 0.02;
     });
     const auto at = static_cast<std::size_t>(same - levels.begin());
     if (same == levels.end()) {
-      levels.push_back({pressure_mpa, 0});
+      levels.push_back({apex.pressure_mpa, 0});
       frames.push_back(0);
     }
     frames[at] += 1;
-    levels[at].pressure_mpa += (pressure_mpa - levels[at].pressure_mpa) / frames[at];
-    levels[at].apex_mm += (table.number(k, "apex_mm") - levels[at].apex_mm) / frames[at];
-    levels[at].sd_mm = noise_mm / std::sqrt(frames[at]);
+    levels[at].pressure_mpa += (apex.pressure_mpa - levels[at].pressure_mpa) / frames[at];
+    levels[at].apex_mm += (apex.apex_mm - levels[at].apex_mm) / frames[at];
+    levels[at].sd_mm = apex.sd_mm / std::sqrt(frames[at]);
   }
   return levels;
 }
@@ -232,7 +252,9 @@ std::vector<fingerpad::FreeApex> apexes_of(const Path& recording, double noise_m
 }  // namespace
 
 Outcome rim(const Path& recording, const RimNoise& noise) {
-  const auto apexes = apexes_of(recording, noise.apex_noise_mm);
+  auto frames = read_apexes(recording, noise.apex_noise_mm);
+  const std::size_t touched = drop_touched(frames);
+  const auto apexes = means_by_pressure(frames);
   const fingerpad::StressFreeCap<double> cap{noise.base_radius_mm, noise.stress_free_height_mm};
   fingerpad::RimFitOptions options{noise.pressure_noise_share, noise.height_sd_mm};
   options.mooney_sd = noise.finds_rubber ? 0.3 : 0;
@@ -243,6 +265,8 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
   if (noise.finds_rubber) {
     report.parameters.push_back({"mooney_share", fit.mooney_share, fit.mooney_sd});
   }
+  report.doubt(touched > 0, "frames whose apex is lower than at a lower pressure are left out (" +
+                                std::to_string(touched) + "): nothing must touch the pad");
   report.doubt(!fit.ok(), text_of(fit));
   Outcome outcome;
   outcome.sections["rim"] = {

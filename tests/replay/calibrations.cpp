@@ -181,6 +181,14 @@ TEST_CASE("The rubber that calibrate finds is the one that a recording is read w
   CHECK(share == Approx(0.3).margin(0.034));
   CHECK(found.sections["rim"]["membrane_modulus_n_per_mm"] == Approx(0.5).epsilon(0.005));
 
+  // a pressed pad has more pressure and a lower apex: it is left out, and told
+  std::ofstream(folder / "signals.csv", std::ios::app) << "4,4,0.021\n";
+  std::ofstream(folder / "apex.csv", std::ios::app) << "4,11.5\n";
+  const Outcome pressed = calibrate::rim(folder, noise);
+  CHECK(pressed.sections.at("rim") == found.sections["rim"]);
+  CHECK(pressed.reports.front().verdict == calibrate::Verdict::doubtful);
+  CHECK(pressed.reports.front().because.find("left out (1)") != std::string::npos);
+
   const fs::path file = scratch("rubber");
   Outcome whole = camera_and_more();
   whole.sections["rim"] = found.sections["rim"];
