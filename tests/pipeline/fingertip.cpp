@@ -576,7 +576,7 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
     test::Random random(7);
     const double per_frame = growth_sd * last_sd_n / std::fabs(pressed.load[2]);
     double lost_n = 0, sd_n = 0;
-    for (int frame = 0; frame < 40; ++frame) {
+    for (int frame = 0; frame < 20; ++frame) {  // 16 are learnt at most
       const double share = (std::min)(per_frame * frame, 1.0);
       const double mpa = free.pressure_mpa + share * (pressed.pressure_mpa - free.pressure_mpa);
       std::vector<Point2<double>> px;
