@@ -6,6 +6,7 @@
 // with: examples/replay/io/stress_free_dots.cpp examples/replay/io/true_forces.cpp
 // with: examples/replay/dots/file.cpp
 // with: examples/replay/foam/sensor.cpp examples/replay/foam/recording.cpp
+// with: examples/replay/foam/faults.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
 #include "replay/foam/recording.hpp"
 
