@@ -71,17 +71,6 @@ void describe_depth(Scene& scene) {
   scene.depth_max_mm = valid > 0 ? top : not_known;
 }
 
-double step_in_pad(const Recording& recording, const cv::Mat& image) {
-  return step_between_blocks(image, cv::Mat_<uchar>(recording.reference_depth > 0));
-}
-
-/// What was calibrated on compressed pictures may measure those that are compressed as much.
-double compressed_step_of(const Recording& recording) {
-  return recording.sensor.dots_only
-             ? compressed_step
-             : compressed_step * std::max(1.0, step_in_pad(recording, recording.reference));
-}
-
 }  // namespace
 
 Chain::Chain(Recording& recording, const Options& options)
@@ -89,8 +78,12 @@ Chain::Chain(Recording& recording, const Options& options)
       dots_(dots_of(recording, options)),
       fingertip_(fingertip_step_of(recording, options, dots_.initial())),
       stick_(dots_.initial().size(), recording.sensor.stick),
-      traction_(traction_step_of(recording, options)),
-      compressed_step_(compressed_step_of(recording)) {}
+      traction_(traction_step_of(recording, options)) {
+  if (fingertip_) {
+    pad_ = recording.reference_depth > 0;
+    compressed_step_ *= std::max(1.0, step_between_blocks(recording.reference, pad_));
+  }
+}
 
 void Chain::look(const DotGrid& dots_px, Scene& scene) {
   FingertipFrame seen =
@@ -100,7 +93,7 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.dots = std::move(seen.dots);
   scene.touch = seen.touch;
   scene.has_depth = true;
-  scene.compressed = step_in_pad(recording_, scene.image) > compressed_step_;
+  scene.compressed = step_between_blocks(scene.image, pad_) > compressed_step_;
   scene.has_rim = seen.has_rim;
   scene.has_curves = recording_.sensor.force.has_value();
   describe_depth(scene);

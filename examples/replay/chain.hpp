@@ -36,7 +36,10 @@ class Chain {
   std::unique_ptr<FingertipStep> fingertip_;  ///< null for a dots-only recording
   StickStep stick_;                           ///< for dots-only recordings
   TractionStep traction_;                     ///< empty if the recording lacks data for it
-  double compressed_step_;  ///< between blocks of a frame that was compressed, the reference not
+  cv::Mat_<uchar> pad_;                       ///< 255 where the reference has a depth
+  /// Between blocks of a frame that was compressed more than the reference, on which it is
+  /// calibrated.
+  double compressed_step_ = compressed_step;
   std::vector<double> frame_ms_;
 };
 

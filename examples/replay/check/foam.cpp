@@ -49,13 +49,6 @@ TaxelChange change_of(const TaxelTable& table, std::size_t taxel) {
   return change;
 }
 
-std::string taxel_name(const TaxelTable& table, std::size_t taxel) {
-  const auto cols = static_cast<std::size_t>(table.cols);
-  std::string name = "r";
-  name += std::to_string(taxel / cols) + "_c";
-  return name += std::to_string(taxel % cols);
-}
-
 /// Largest reading less the smallest of a taxel in some samples.
 double range_of(const TaxelTable& table, std::size_t taxel, std::size_t from, std::size_t to) {
   double least = std::numeric_limits<double>::infinity(), most = -least;

@@ -20,13 +20,6 @@ std::string number(double value) {
   return text;
 }
 
-std::string place_of(const TaxelTable& table, std::size_t taxel) {
-  const auto cols = static_cast<std::size_t>(table.cols);
-  std::string place = "taxels.csv, r";
-  place += std::to_string(taxel / cols) + "_c";
-  return place += std::to_string(taxel % cols);
-}
-
 /// Adds one line for all taxels for which something was `counted`.
 void tell(FoamRecording& recording,
           const std::vector<int>& counted,
@@ -36,7 +29,8 @@ void tell(FoamRecording& recording,
   if (first != counted.end()) {
     const auto taxels = std::count_if(first, counted.end(), [](int n) { return n > 0; });
     recording.told.push_back(
-        {place_of(recording.table, static_cast<std::size_t>(first - counted.begin())),
+        {"taxels.csv, " +
+             taxel_name(recording.table, static_cast<std::size_t>(first - counted.begin())),
          std::to_string(std::accumulate(first, counted.end(), 0)) + " readings of " +
              std::to_string(taxels) + (taxels == 1 ? " taxel " : " taxels ") + what,
          remedy});

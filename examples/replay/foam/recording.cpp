@@ -261,6 +261,11 @@ fingerpad::StridedView<const double> FoamRecording::finger(int sample, int finge
   return {all + place.first_row * table.cols + place.first_col, place.rows, place.cols, table.cols};
 }
 
+std::string taxel_name(const TaxelTable& table, std::size_t taxel) {
+  const int at = static_cast<int>(taxel);
+  return name_of(Place{at / table.cols, at % table.cols});
+}
+
 double FoamRecording::seconds_in(double stated_s) const {
   const auto first = std::find_if(table.times_s.begin(), table.times_s.end(),
                                   [](double time_s) { return std::isfinite(time_s); });

@@ -30,6 +30,9 @@ struct TaxelTable {
   }
 };
 
+/// "r0_c0", the column of a taxel.
+std::string taxel_name(const TaxelTable& table, std::size_t taxel);
+
 /// Reads taxels.csv. A cell that is empty, not finite, or absent at the end of a line is a missing
 /// reading. Throws Failure.
 TaxelTable read_taxels(const std::filesystem::path& file);

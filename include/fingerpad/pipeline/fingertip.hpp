@@ -201,23 +201,20 @@ class Fingertip {
     }
   }
 
-  /// Beyond four standard deviations.
-  static bool presses(const WrenchResult& wrench) {
-    return wrench.ok() && -wrench.force_n.z > 4 * std::sqrt(wrench.covariance(2, 2));
-  }
-
   /// An edge that may lie so far off that a quarter of the area is in doubt; or what the rim says,
   /// which has not seen the contact: a press beyond four standard deviations where no region is
   /// found, or an area on which the pressure alone exceeds the press by a quarter. On an object
   /// that is rigid and not hollow, the membrane's tension only adds to the pressure.
   static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
     const ContactResult& contact = touch.contact;
+    const bool is_felt = touch.wrench.ok();
     const double press_n = -touch.wrench.force_n.z;
     const double sd_n = std::sqrt(touch.wrench.covariance(2, 2));
-    return contact.in_contact() ? 4 * contact.area_sd_mm2 > contact.area_mm2 ||
-                                      (touch.wrench.ok() && pressure_mpa * contact.area_mm2 >
-                                                                1.25 * (press_n + 2 * sd_n))
-                                : presses(touch.wrench);
+    if (!contact.in_contact()) {
+      return is_felt && press_n > 4 * sd_n;
+    }
+    return 4 * contact.area_sd_mm2 > contact.area_mm2 ||
+           (is_felt && pressure_mpa * contact.area_mm2 > 1.25 * (press_n + 2 * sd_n));
   }
 
   FingertipStatus judge(FingertipResult& touch, double pressure_mpa) const {
