@@ -253,6 +253,9 @@ TEST_CASE("normal force: variance by hand", "[normal_force]") {
   curve.residual_sd_n = 0.5;
   CHECK(variance(4) == printed(by_parameters + 0.25));
   CHECK(NormalForce(curve)(4, 0.09).variance_n2 == printed(by_parameters + 0.25 + 0.36));
+  const auto refused = NormalForce(curve)(4, -1e6);
+  CHECK(std::isnan(refused.variance_n2));
+  CHECK(refused.force_n == NormalForce(curve)(4).force_n);
   CHECK(variance(0) == 0.25);
   CHECK(variance(-3) == 0.25);
   // no variance without errors

@@ -144,8 +144,8 @@ class NormalForce {
   /// Refuses bad parameters (parameter_error).
   explicit NormalForce(const ForceCurve<S>& curve) : curve_(curve) { require(curve); }
 
-  /// The force of one frame. `measure_variance` is that of this measure in addition to that of the
-  /// calibration.
+  /// The force of one frame. `measure_variance`, >= 0, is that of this measure in addition to that
+  /// of the calibration; the force gets no variance where it is negative or NaN.
   ForceResult<S> operator()(const S& measure, const S& measure_variance = S(0)) const {
     ForceResult<S> result;
     if (!is_finite(measure)) {
@@ -169,7 +169,7 @@ class NormalForce {
                     : fades             ? ForceStatus::below_range
                     : past              ? ForceStatus::beyond_range
                                         : ForceStatus::measured;
-    if (value(curve_.residual_sd_n) >= 0) {
+    if (value(curve_.residual_sd_n) >= 0 && value(measure_variance) >= 0) {
       // the coefficients, what the calibration could not explain, noise of the measure, and the
       // distance of the tangent from the curve, because nothing shows which of them is right
       typename ForceCurve<S>::Coefficients by_coefficient = {fade};
