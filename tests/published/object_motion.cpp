@@ -235,7 +235,9 @@ TEST_CASE("published object motion: a rolled ball, and what ends an object") {
   const test::RollingBall ball;
   test::Rolling roll(ball, -6, 1);
   published::ObjectMotion motion(ball.initial());
-  CHECK(motion(roll.dots, roll.contact).begun);
+  const auto begin = motion(roll.dots, roll.contact);
+  CHECK(begin.begun);
+  const Vector start = roll.dots(begin.reference.row, begin.reference.col);
   int changes = 0;
   DotIndex before;
   published::ObjectMotionResult<double> result;
@@ -244,6 +246,8 @@ TEST_CASE("published object motion: a rolled ball, and what ends an object") {
     result = motion(roll.dots, roll.contact);
     REQUIRE(result.ok());
     CHECK(!result.begun);
+    // the pose turns about the first reference dot and carries it along
+    CHECK(norm(result.pose(start) - start - result.displacement_mm) < 1e-12);
     changes += result.reference == before ? 0 : 1;
     before = result.reference;
   }

@@ -10,6 +10,7 @@
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/neighbour_light.hpp"
 #include "support/catch.hpp"
+#include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
 
@@ -97,6 +98,10 @@ TEST_CASE("published neighbouring light: r, m_0 and n of presses are found again
   CHECK(found.m0_mm_per_rad == Approx(2e-3));
   CHECK(found.n_per_mm == Approx(0.3));
   CHECK(found.sum_sq < 1e-9);
+  for (Index r = 1; r <= 50; ++r) {  // the residuals tell the radius from those beside it
+    const double sum_sq = found.sum_sq_by_radius[static_cast<std::size_t>(r - 1)];
+    CHECK((r == press.radius ? sum_sq == found.sum_sq : sum_sq > 1e-3));
+  }
   // the default compensation is the same in the middle of the image
   NeighbourLightCompensation<double> light({press.radius, 2e-3, 0.3}, press.pitch_mm, press.free);
   test::Image<double> out(press.size, press.size);
@@ -198,6 +203,104 @@ TEST_CASE("published contact conditions: a cylinder bends alike however it is tu
       CHECK(published::touches(z, 30, 30, o));
     }
   }
+}
+
+TEST_CASE("published contact conditions: which sections there are, in a turned press",
+          "[published]") {
+  // one section in 18 bulges, wherever the press is turned: only the test of every direction sees
+  // it
+  const auto pressed_but_at = [](double turn_rad) {
+    Image<double> z(61, 61);
+    for (Index i = 0; i < 61; ++i) {
+      for (Index j = 0; j < 61; ++j) {
+        const double x = 0.08 * static_cast<double>(j - 30), y = 0.08 * static_cast<double>(i - 30);
+        const double off = std::remainder(std::atan2(y, x) - turn_rad, std::numbers::pi);
+        z(i, j) = 9 - (std::abs(off) < 0.05 ? 0.05 : -0.02) * (x * x + y * y) / 2;
+      }
+    }
+    return z;
+  };
+  for (int k = 1; k <= 18; ++k) {
+    CAPTURE(k);
+    const auto z = pressed_but_at(std::numbers::pi * k / 18);
+    published::SlidesContactOptions o{.every_direction = true, .threshold_per_mm = 0.01};
+    o.radius_px = 25;
+    CHECK_FALSE(published::touches(z, 30, 30, o));
+    o.threshold_per_mm = 0.06;
+    CHECK(published::touches(z, 30, 30, o));
+    o = {.clamps = true, .threshold_per_mm = 0.99 * 0.05 / 18, .radius_px = 25};
+    CHECK_FALSE(published::touches(z, 30, 30, o));
+    o.threshold_per_mm = 1.01 * 0.05 / 18;
+    CHECK(published::touches(z, 30, 30, o));
+  }
+}
+
+TEST_CASE("published contact conditions: thresholds from the free pad, by definition",
+          "[published]") {
+  // delta_R is the least of all sections, delta_f that of the means, on a free pad that bends more
+  // one way than the other, however it is turned
+  const bool every_direction = GENERATE(false, true), clamps = GENERATE(false, true);
+  const double turn_rad = GENERATE(0.0, 0.4, 1.1);
+  const published::SlidesContactOptions o{.clamps = clamps,
+                                          .every_direction = every_direction,
+                                          .directions = 6,
+                                          .radius_px = 4,
+                                          .pitch_mm = 0.2,
+                                          .step_px = 3};
+  std::vector<Image<double>> frames;
+  test::Random random(8);
+  for (int k = 0; k < 5; ++k) {
+    Image<double> z(24, 25);
+    for (Index i = 0; i < 24; ++i) {
+      for (Index j = 0; j < 25; ++j) {
+        const double x = 0.2 * static_cast<double>(j - 12), y = 0.2 * static_cast<double>(i - 11);
+        const double u = std::cos(turn_rad) * x + std::sin(turn_rad) * y;
+        const double v = std::cos(turn_rad) * y - std::sin(turn_rad) * x;
+        z(i, j) = 9 - 0.05 * u * u - 0.01 * v * v + 1e-3 * random.normal();
+      }
+    }
+    frames.push_back(z);
+  }
+  frames[2](7, 16) = test::nan;
+  const int count = clamps || every_direction ? o.directions : 2 * o.directions;
+  double least = 1e9;
+  int lows = 0;
+  for (Index i = 1; i < 24; i += 3) {
+    for (Index j = 1; j < 25; j += 3) {
+      for (int section = 1; section <= (every_direction ? count : 1); ++section) {
+        std::vector<double> seen;
+        for (const auto& z : frames) {
+          const auto at = [&](int n) {
+            const double k = published::section_curvature<double>(
+                z, i, j, std::numbers::pi * n / count, o.radius_px, o.pitch_mm);
+            return clamps && k < 0 ? 0 : k;
+          };
+          double mean = 0;
+          for (int n = 1; n <= count; ++n) {
+            mean += at(n) / o.directions;
+          }
+          seen.push_back(every_direction ? at(section) : mean);
+        }
+        double mean = 0, squares = 0;
+        for (const double x : seen) {
+          mean += x / 5;
+        }
+        for (const double x : seen) {
+          squares += (x - mean) * (x - mean) / 4;
+        }
+        const double low = mean - 2 * std::sqrt(squares);
+        least = low < least ? low : least;
+        lows += low == low ? 1 : 0;
+      }
+    }
+  }
+  CHECK(lows > 25);
+  CHECK(published::threshold_by_slides(frames, o) == Approx(least).epsilon(1e-9));
+  auto bad = o;
+  bad.directions = 0;
+  CHECK_THROWS_AS(published::threshold_by_slides(frames, bad), parameter_error);
+  const std::vector<Image<double>> unknown(2, Image<double>(24, 25, test::nan));
+  CHECK(std::isinf(published::threshold_by_slides(unknown, o)));
 }
 
 TEST_CASE("published contact region: centers every 5 pixels", "[published]") {

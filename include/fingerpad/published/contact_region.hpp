@@ -8,12 +8,15 @@
 // ones set to 0; and the slides' first test, every direction below delta_R. A level section has no
 // circle: its curvature is NaN and passes no test (E013). Heights are orthographic, as printed. The
 // mask is not cleaned. With noise the printed threshold misses half of a flat contact: E018. The
-// slides' rule for it is `threshold_by_slides`.
+// slides' thresholds, from the free pad, are those of `threshold_by_slides`.
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -47,12 +50,23 @@ struct SlidesContactOptions {
   /// sum over 2n directions, divided by n.
   bool clamps = false;
   bool every_direction = false;       ///< the slides' first test: 1/R' < delta_R in each of n
+                                      ///< directions; `clamps` applies to each
   double threshold_per_mm = 0.00015;  ///< delta, delta_f or delta_R, finite
   int directions = 18;                ///< n, in [1, 360]
   double radius_px = 10;              ///< r, in [1, 1000]; 25 px in the slides
   double pitch_mm = 0.08;             ///< size of a pixel on the membrane, in (0, 10]
   int step_px = 5;                    ///< "changing the center point P by 5 pixel", in [1, 1000]
 };
+
+/// The first parameter without meaning, or "".
+inline std::string check(const SlidesContactOptions& o) {
+  return fingerpad::check("SlidesContactOptions",
+                          {{"threshold_per_mm", o.threshold_per_mm, finite_number},
+                           {"directions", o.directions, within(1, 360)},
+                           {"radius_px", o.radius_px, within(1, 1000)},
+                           {"pitch_mm", o.pitch_mm, {.min = 0, .max = 10, .above_min = true}},
+                           {"step_px", o.step_px, within(1, 1000)}});
+}
 
 /// 1/R' of the section at the angle theta through (row, col). The circle passes through the pixel
 /// itself and the pixels nearest to the distance r before and after it. NaN if a pixel lies outside
@@ -77,20 +91,38 @@ S section_curvature(const Depth& depth_mm,
                                  at(row + down, col + right));
 }
 
+/// Calls visit(x) with each curvature that the test holds against its threshold at (row, col):
+/// those of all sections with every_direction, else their mean alone.
+template <scalar S, grid Depth, class Visit>
+void for_each_compared(const Depth& depth_mm,
+                       Index row,
+                       Index col,
+                       const SlidesContactOptions& o,
+                       const Visit& visit) {
+  const int count = o.clamps || o.every_direction ? o.directions : 2 * o.directions;
+  S sum = S(0);
+  for (int i = 1; i <= count; ++i) {
+    S k = section_curvature<S>(depth_mm, row, col, std::numbers::pi * i / count, o.radius_px,
+                               o.pitch_mm);
+    k = o.clamps && k < S(0) ? S(0) : k;
+    sum += k;
+    if (o.every_direction) {
+      visit(k);
+    }
+  }
+  if (!o.every_direction) {
+    visit(S(sum / S(o.directions)));
+  }
+}
+
 /// Whether the membrane is in contact at (row, col).
 template <scalar S = double, grid Depth>
 bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOptions& o) {
-  const int count = o.clamps || o.every_direction ? o.directions : 2 * o.directions;
-  const S threshold = S(o.threshold_per_mm);
-  S sum = S(0);
   bool all_below = true;
-  for (int i = 1; i <= count; ++i) {
-    const S k = section_curvature<S>(depth_mm, row, col, std::numbers::pi * i / count, o.radius_px,
-                                     o.pitch_mm);
-    sum += o.clamps && k < S(0) ? S(0) : k;
-    all_below = all_below && k < threshold;  // false for NaN
-  }
-  return o.every_direction ? all_below : sum / S(o.directions) < threshold;
+  for_each_compared<S>(depth_mm, row, col, o, [&](const S& k) {
+    all_below = all_below && k < S(o.threshold_per_mm);  // false for NaN
+  });
+  return all_below;
 }
 
 /// The contact mask of a height map. Every pixel gets the answer at the center of its block of
@@ -99,12 +131,7 @@ bool touches(const Depth& depth_mm, Index row, Index col, const SlidesContactOpt
 template <scalar S = double, grid Depth, class Mask>
 double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContactOptions& o = {}) {
   static_assert(writable_grid<Mask, bool>, "this grid is written to: its cells must be assignable");
-  require("SlidesContactOptions",
-          {{"threshold_per_mm", o.threshold_per_mm, finite_number},
-           {"directions", o.directions, within(1, 360)},
-           {"radius_px", o.radius_px, within(1, 1000)},
-           {"pitch_mm", o.pitch_mm, {.min = 0, .max = 10, .above_min = true}},
-           {"step_px", o.step_px, within(1, 1000)}});
+  require(o);
   const auto to = as_view(std::forward<Mask>(mask));
   if (!same_size(depth_mm, to)) {
     return not_a_number<double>();
@@ -124,25 +151,38 @@ double contact_by_slides(const Depth& depth_mm, Mask&& mask, const SlidesContact
   return touching_px * o.pitch_mm * o.pitch_mm;
 }
 
-/// delta of the slides, 1/mm: the least E - 2 sigma of the pixels, with the mean E and the standard
-/// deviation sigma of a pixel's curvature over frames of the free pad. `curvatures` is a container
-/// of at least 2 curvature maps of one size; pixels that are NaN in one do not count.
-template <class Frames>
-double threshold_by_slides(const Frames& curvatures) {
-  const auto first = as_view(*std::begin(curvatures));
-  const double n = static_cast<double>(std::size(curvatures));
+/// The slides' threshold of a test, 1/mm, from frames of the free pad: min(E - 2 sigma) over all
+/// centers, with the mean E and the standard deviation sigma over the frames of the mean curvature
+/// (delta_f), or with every_direction over all centers and sections, of each section (delta_R).
+/// `depths_mm` is a container of at least 2 height maps of one size. What is NaN in one frame does
+/// not count; infinity if nothing does. Refuses bad parameters (parameter_error). O(frames pixels
+/// directions / step_px^2).
+template <scalar S = double, class Frames>
+double threshold_by_slides(const Frames& depths_mm, const SlidesContactOptions& o) {
+  require(o);
+  const auto first = as_view(*std::begin(depths_mm));
   double least = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < first.rows(); ++i) {
-    for (Index j = 0; j < first.cols(); ++j) {
-      double mean = 0, squares = 0;
-      for (const auto& k : curvatures) {
-        mean += static_cast<double>(as_view(k)(i, j)) / n;
+  std::vector<double> mean, squares;  // of what is compared
+  for (Index row = o.step_px / 2; row < first.rows(); row += o.step_px) {
+    for (Index col = o.step_px / 2; col < first.cols(); col += o.step_px) {
+      mean.assign(static_cast<std::size_t>(o.directions), 0);
+      squares = mean;
+      double n = 0;
+      std::size_t compared = 0;
+      for (const auto& depth_mm : depths_mm) {
+        n += 1;
+        compared = 0;
+        for_each_compared<S>(depth_mm, row, col, o, [&](const S& k) {
+          const double x = static_cast<double>(value(k)), off = x - mean[compared];
+          mean[compared] += off / n;
+          squares[compared] += off * (x - mean[compared]);
+          ++compared;
+        });
       }
-      for (const auto& k : curvatures) {
-        squares += square(static_cast<double>(as_view(k)(i, j)) - mean);
+      for (std::size_t k = 0; k < compared; ++k) {
+        const double low = mean[k] - 2 * std::sqrt(squares[k] / (n - 1));
+        least = low < least ? low : least;  // false for NaN
       }
-      const double low = mean - 2 * std::sqrt(squares / (n - 1));
-      least = low < least ? low : least;
     }
   }
   return least;

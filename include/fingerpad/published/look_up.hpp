@@ -119,9 +119,8 @@ NormalForce<S> first_normal_force_by_area() {
           {S(0.748), S(-0.637), S(1.7)},
           {S(1.2), S(0.00171) * S(degrees_per_rad), S(-1)}};
 }
-/// By depth the force falls while the contact grows, and turns negative. In both constants the
-/// digit before the decimal point is illegible: that of eq. 19 is `constant_n`, 0.2 or 8.2 (E029),
-/// that of eq. 20 is taken as 0.
+/// By depth; the gains of both are negative. In both constants the digit before the decimal point
+/// is illegible: that of eq. 19 is `constant_n`, 0.2 or 8.2 (E029), that of eq. 20 is taken as 0.
 template <scalar S = double>
 NormalForce<S> first_normal_force_by_depth(const S& constant_n = S(0.2)) {
   return {force_of_depth<S>(),

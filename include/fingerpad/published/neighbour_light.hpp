@@ -10,6 +10,7 @@
 // by least squares, and then the best radius. Pixels whose error or sum is not positive have no
 // logarithm and are left out, which biases the fit toward large errors (E011).
 // depth/neighbour_light.hpp and calibrate/neighbour_light.hpp are the defaults.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -79,7 +80,8 @@ struct [[nodiscard]] IdentifiedLight {
   Index radius_px = 0;  ///< r; 0: at no radius two pixels of different depth have logarithms
   double m0_mm_per_rad = 0;
   double n_per_mm = 0;
-  double sum_sq = 0;  ///< S = sum (L - F)^2, the smallest of all radii
+  double sum_sq = 0;                        ///< S = sum (L - F)^2, the smallest of all radii
+  std::array<double, 50> sum_sq_by_radius;  ///< of r = 1..50; NaN: no line
 
   bool ok() const { return radius_px > 0; }
 };
@@ -92,6 +94,7 @@ IdentifiedLight identify_neighbour_light(const Depth& depth_mm,
                                          const Reference& free_mm,
                                          double pitch_mm) {
   IdentifiedLight best;
+  best.sum_sq_by_radius.fill(not_a_number<double>());
   const auto l = as_view(depth_mm);
   const auto l_a = as_view(actual_mm);
   const auto l_0 = as_view(free_mm);
@@ -122,8 +125,11 @@ IdentifiedLight identify_neighbour_light(const Depth& depth_mm,
     const double spread = xx - x * x / count;
     const double n = (xy - x * y / count) / spread, ln_m0 = (y - n * x) / count;
     const double sum_sq = std::fmax(yy - ln_m0 * y - n * xy, 0);
-    if (spread > 1e-12 * xx && (!best.ok() || sum_sq < best.sum_sq)) {
-      best = {r, std::exp(ln_m0), n, sum_sq};
+    if (spread > 1e-12 * xx) {
+      best.sum_sq_by_radius[static_cast<std::size_t>(r - 1)] = sum_sq;
+      if (!best.ok() || sum_sq < best.sum_sq) {
+        best = {r, std::exp(ln_m0), n, sum_sq, best.sum_sq_by_radius};
+      }
     }
   }
   return best;
