@@ -10,11 +10,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "bench/trials/grip/camera.hpp"
+#include "bench/trials/grip/grip_chart.hpp"
+#include "bench/trials/grip/slipping_load.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
-#include "grip/camera.hpp"
-#include "grip/grip_chart.hpp"
-#include "grip/slipping_load.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdio>
 
+#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
-#include "grip/foam_fingers.hpp"
 
 int main() {
   const grip::FoamFingersSetup object;

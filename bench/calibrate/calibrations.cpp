@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Calibrations: time of a fit ("ns/pixel" is per fit).
 // "a sensor of numbers": the calibrations that replay_many repeats
-// (examples/replay_many/trials.cpp), from newly drawn measurements. Error: of each parameter,
-// relative to the true one, over 100 fits with fresh noise.
+// (examples/programs/replay_many/trials.cpp), from newly drawn measurements. Error: of each
+// parameter, relative to the true one, over 100 fits with fresh noise.
 // "... on scenes": curves and maps from contacts of finite-element membranes
 // (tests/data/contacts.csv). Error: of the method, on a scene that the fit does not use. Published
 // rows: a quadratic with a constant, from the press alone; the central dot, straight lines and the
@@ -21,7 +21,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "examples/replay_many/trials.hpp"
+#include "examples/programs/replay_many/trials.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/force/look_up.hpp"

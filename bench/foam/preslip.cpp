@@ -9,10 +9,10 @@
 // the newest sample, in double. "detection": patches of foam fingers begin to slip at a known time
 // (tests/support/foam_signals.hpp). Error: the delay of the alarm, in windows of 16 samples; an
 // earlier alarm counts as none.
-// "least force": an object hangs between simulated foam fingers (examples/grip/foam_fingers.hpp),
-// which loosen their grip until it slips. Error: the excess of the force at the warning over the
-// slipping force, relative to the latter; for a lift, the rounding of its commands against long
-// double.
+// "least force": an object hangs between simulated foam fingers
+// (bench/trials/grip/foam_fingers.hpp), which loosen their grip until it slips. Error: the excess
+// of the force at the warning over the slipping force, relative to the latter; for a lift, the
+// rounding of its commands against long double.
 #include "fingerpad/foam/preslip.hpp"
 
 #include <array>
@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "bench/support/run.hpp"
-#include "examples/grip/foam_fingers.hpp"
+#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/foam/taxels.hpp"
 #include "support/foam_signals.hpp"

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/foam/holding_force.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
-#include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
 

@@ -56,7 +56,7 @@ def dead_paths(root, file, text):
         if path.split("/")[0] in OF_A_RECORDING or re.search(r"\b[A-Z]{3,}\b", path):
             continue
         places = [root, root / "include", root / "include/fingerpad", root / "examples", root / "tests",
-                  root / "docs", file.parent, *(root / "examples").iterdir()]
+                  root / "docs", file.parent, *(root / "examples").iterdir(), *(root / "examples/programs").iterdir()]
         if not any((place / path).exists() for place in places):
             yield f"no such file: {path}"
 

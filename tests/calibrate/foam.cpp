@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
-#include "grip/foam_fingers.hpp"
 #include "support/catch.hpp"
 #include "support/foam_signals.hpp"
 #include "support/pad.hpp"

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What replay reads but videos, with any bytes in it: each file is read, or refused by one line.
-// with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
-// with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
-// with: examples/replay/io/stress_free_dots.cpp examples/replay/io/true_forces.cpp
-// with: examples/replay/dots/file.cpp
-// with: examples/replay/foam/sensor.cpp examples/replay/foam/recording.cpp
-// with: examples/replay/foam/faults.cpp
+// with: examples/programs/common/sensor.cpp examples/programs/replay/io/number_table.cpp
+// with: examples/programs/common/signals.cpp examples/programs/replay/io/images.cpp
+// with: examples/programs/common/stress_free_dots.cpp examples/programs/replay/io/true_forces.cpp
+// with: examples/programs/replay/dots/file.cpp
+// with: examples/programs/replay/foam/sensor.cpp examples/programs/replay/foam/recording.cpp
+// with: examples/programs/replay/foam/faults.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs
 #include "replay/foam/recording.hpp"
 
@@ -14,16 +14,16 @@
 #include <filesystem>
 #include <string>
 
+#include "common/failure.hpp"
+#include "common/images.hpp"
+#include "common/sensor.hpp"
+#include "common/signals.hpp"
+#include "common/stress_free_dots.hpp"
+#include "common/true_forces.hpp"
 #include "fuzz/file.hpp"
 #include "fuzz/input.hpp"
 #include "replay/dots/file.hpp"
 #include "replay/foam/sensor.hpp"
-#include "replay/io/failure.hpp"
-#include "replay/io/images.hpp"
-#include "replay/io/sensor.hpp"
-#include "replay/io/signals.hpp"
-#include "replay/io/stress_free_dots.hpp"
-#include "replay/io/true_forces.hpp"
 
 using fuzz::require;
 

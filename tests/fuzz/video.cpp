@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: MIT
 // A recording whose video has any bytes in it: it is read, or refused by one line. A decoder may
 // crash; this process may not.
-// with: examples/replay/io/recording.cpp examples/replay/io/video.cpp
-// with: examples/replay/io/capture.cpp examples/replay/live/frames.cpp
-// with: examples/replay/io/sensor.cpp examples/replay/io/number_table.cpp
-// with: examples/replay/io/signals.cpp examples/replay/io/images.cpp
-// with: examples/replay/io/stress_free_dots.cpp examples/replay/io/true_forces.cpp
+// with: examples/programs/common/recording.cpp examples/programs/replay/io/video.cpp
+// with: examples/programs/common/capture.cpp examples/programs/replay/live/frames.cpp
+// with: examples/programs/common/sensor.cpp examples/programs/replay/io/number_table.cpp
+// with: examples/programs/common/signals.cpp examples/programs/replay/io/images.cpp
+// with: examples/programs/common/stress_free_dots.cpp examples/programs/replay/io/true_forces.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs -lopencv_videoio
 // The thread that watches memory may hold a lock of the address sanitizer at a fork.
 // options: -rss_limit_mb=0
-#include "replay/io/video.hpp"
+#include "common/video.hpp"
 
 #include <pthread.h>
 #include <sys/resource.h>
@@ -25,10 +25,10 @@
 #include <optional>
 #include <string>
 
+#include "common/failure.hpp"
+#include "common/recording.hpp"
 #include "fuzz/file.hpp"
 #include "fuzz/input.hpp"
-#include "replay/io/failure.hpp"
-#include "replay/io/recording.hpp"
 #include "replay/live/frames.hpp"
 
 using fuzz::require;

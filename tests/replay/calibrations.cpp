@@ -11,8 +11,8 @@
 
 #include "calibrate/geometry.hpp"
 #include "calibrate/recordings.hpp"
+#include "common/failure.hpp"
 #include "replay/foam/sensor.hpp"
-#include "replay/io/failure.hpp"
 #include "support/catch.hpp"
 #include "support/inflated_rubber.hpp"
 #include "support/pad.hpp"

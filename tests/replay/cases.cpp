@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/failure.hpp"
 #include "replay/check/check.hpp"
-#include "replay/io/failure.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"

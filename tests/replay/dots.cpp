@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "replay/io/failure.hpp"
-#include "replay/io/recording.hpp"
+#include "common/failure.hpp"
+#include "common/recording.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
 

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "common/failure.hpp"
+#include "common/images.hpp"
 #include "replay/dots/dots.hpp"
-#include "replay/io/failure.hpp"
-#include "replay/io/images.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "common/failure.hpp"
 #include "foam/recording.hpp"
-#include "replay/io/failure.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"

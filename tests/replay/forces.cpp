@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "replay/io/failure.hpp"
-#include "replay/io/signals.hpp"
-#include "replay/io/true_forces.hpp"
+#include "common/failure.hpp"
+#include "common/signals.hpp"
+#include "common/true_forces.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"

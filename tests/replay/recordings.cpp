@@ -18,11 +18,11 @@
 #include <string>
 #include <utility>
 
+#include "common/failure.hpp"
+#include "common/images.hpp"
+#include "common/recording.hpp"
+#include "common/video.hpp"
 #include "replay/chain.hpp"
-#include "replay/io/failure.hpp"
-#include "replay/io/images.hpp"
-#include "replay/io/recording.hpp"
-#include "replay/io/video.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Closed loops of a simulated fingertip (examples/grip) at 30 frames/s. Dots in space and the force
-// of the contact, both with noise, go through StickRatio and FrictionLimit into GripControl,
+// Closed loops of a simulated fingertip (bench/trials/grip) at 30 frames/s. Dots in space and the
+// force of the contact, both with noise, go through StickRatio and FrictionLimit into GripControl,
 // whose force goes back to the fingertip.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "examples/grip/slipping_load.hpp"
+#include "bench/trials/grip/slipping_load.hpp"
 #include "fingerpad/slip/friction_limit.hpp"
 #include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"

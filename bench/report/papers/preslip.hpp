@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "examples/grip/foam_fingers.hpp"
+#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "table.hpp"
 

@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Calibrates the camera.
+#include "calibrate/geometry.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "calibrate/recordings.hpp"
+#include "common/failure.hpp"
+#include "fingerpad/adapt/dual.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/dots/dot_finder.hpp"
+
+namespace calibrate {
+namespace {
+
+using fingerpad::Point2;
+
+std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
+  fingerpad::DotFinderOptions options;
+  options.pattern.rows = plate.rows;
+  options.pattern.cols = plate.cols;
+  const fingerpad::DotFinder finder(read_pictures(folder, plate.format()).front(), options);
+  const auto found = finder.ok() ? count_present(finder.free_px()) : 0;
+  if (found != plate.rows * plate.cols) {
+    replay::fail(folder, std::to_string(found) + " of " + std::to_string(plate.rows) + " x " +
+                             std::to_string(plate.cols) +
+                             " dots were found; all must be in the image, sharp and evenly lit");
+  }
+  std::vector<PlateDot> dots;
+  for (int i = 0; i < plate.rows; ++i) {
+    for (int j = 0; j < plate.cols; ++j) {
+      dots.push_back({{(j - (plate.cols - 1) / 2.0) * plate.pitch_mm,
+                       (i - (plate.rows - 1) / 2.0) * plate.pitch_mm},
+                      finder.free_px()(i, j)});
+    }
+  }
+  return dots;
+}
+
+/// Least squares of N parameters by normal equations, which are well conditioned here: all lengths
+/// are in mm about the middle of a pad. (A decomposition of all rows takes ten seconds to compile.)
+template <int N>
+class LeastSquares {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  void add(const Vector& regressors, double value) {
+    normal_ += regressors * regressors.transpose();
+    right_ += regressors * value;
+  }
+  Eigen::Matrix<double, N, N> inverse() const { return normal_.inverse(); }
+  Vector solution() const { return inverse() * right_; }
+
+ private:
+  Eigen::Matrix<double, N, N> normal_ = Eigen::Matrix<double, N, N>::Zero();
+  Vector right_ = Vector::Zero();
+};
+
+/// What the pictures of a target determine, in this order.
+enum { px_per_mm, aspect, distance, center_x, center_y, k1, turn, turn_high, shift_x, shift_y };
+using CameraNumber = fingerpad::Dual<10>;
+
+/// Where a dot of a target `raised_mm` beyond the plate is seen.
+Point2<CameraNumber> seen_at(const std::array<CameraNumber, 10>& p,
+                             const Point2<double>& plate_mm,
+                             bool is_high,
+                             double raised_mm) {
+  fingerpad::Camera<CameraNumber> camera;
+  camera.plate_distance_mm = p[distance];
+  camera.center_x_px = p[center_x];
+  camera.center_y_px = p[center_y];
+  camera.pitch_mm = CameraNumber(1) / p[px_per_mm];
+  camera.pixel_aspect = p[aspect];
+  camera.distortion_k1 = p[k1];
+  const CameraNumber angle = p[is_high ? turn_high : turn], c = cos(angle), s = sin(angle);
+  const CameraNumber x = c * plate_mm.x - s * plate_mm.y + (is_high ? p[shift_x] : 0.0);
+  const CameraNumber y = s * plate_mm.x + c * plate_mm.y + (is_high ? p[shift_y] : 0.0);
+  const CameraNumber far = p[distance] + (is_high ? raised_mm : 0.0);
+  return pixel_at_tangents(camera, {x / far, y / far});
+}
+
+std::array<CameraNumber, 10> constants(const std::array<double, 10>& p) {
+  std::array<CameraNumber, 10> numbers;
+  std::copy(p.begin(), p.end(), numbers.begin());
+  return numbers;
+}
+
+/// Turn, px per mm, and middle of a target by its moments.
+struct TargetLook {
+  double turn = 0, px_per_mm = 0;
+  Point2<double> middle_px = {0, 0};
+
+  explicit TargetLook(const std::vector<PlateDot>& dots) {
+    double along = 0, across = 0, square = 0;
+    for (const PlateDot& dot : dots) {
+      middle_px += (1 / static_cast<double>(dots.size())) * dot.picture_px;
+      along += dot.plate_mm.x * dot.picture_px.x + dot.plate_mm.y * dot.picture_px.y;
+      across += dot.plate_mm.x * dot.picture_px.y - dot.plate_mm.y * dot.picture_px.x;
+      square += squared_norm(dot.plate_mm);
+    }
+    turn = std::atan2(across, along);
+    px_per_mm = std::hypot(along, across) / square;
+  }
+};
+
+struct CameraEstimate {
+  std::array<double, 10> p = {};
+  std::array<double, 10> sd = {};
+  double residual_px = 0;
+};
+
+/// Gauss-Newton from `p`, with the parameters held that `is_held` names.
+CameraEstimate estimate_camera(const std::array<const std::vector<PlateDot>*, 2>& pictures,
+                               double raised_mm,
+                               std::array<double, 10> p,
+                               const std::array<bool, 10>& is_held) {
+  CameraEstimate best;
+  for (int step = 0; step < 20; ++step) {
+    std::array<CameraNumber, 10> number;
+    LeastSquares<10> fit;
+    double count = 0, residual_sq = 0;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      number[k] = is_held[k] ? CameraNumber(p[k]) : CameraNumber::parameter(p[k], k);
+      fit.add(LeastSquares<10>::Vector::Unit(static_cast<int>(k)) * (is_held[k] ? 1 : 0), 0);
+      count -= is_held[k] ? 0 : 1;
+    }
+    for (const bool is_high : {false, true}) {
+      for (const PlateDot& dot : *pictures[is_high ? 1 : 0]) {
+        const auto at = seen_at(number, dot.plate_mm, is_high, raised_mm);
+        const Point2<double> miss = dot.picture_px - Point2<double>{at.x.value, at.y.value};
+        fit.add(Eigen::Map<const LeastSquares<10>::Vector>(at.x.slopes.data()), miss.x);
+        fit.add(Eigen::Map<const LeastSquares<10>::Vector>(at.y.slopes.data()), miss.y);
+        residual_sq += squared_norm(miss);
+        count += 2;
+      }
+    }
+    const auto inverse = fit.inverse();
+    const LeastSquares<10>::Vector change = fit.solution();
+    double largest = 0;  // change in standard deviations
+    best.residual_px = std::sqrt(residual_sq / count);
+    best.p = p;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const auto i = static_cast<int>(k);
+      p[k] += change(i);
+      best.sd[k] = is_held[k] ? std::numeric_limits<double>::quiet_NaN()
+                              : best.residual_px * std::sqrt(inverse(i, i));
+      largest = std::fmax(largest, std::abs(change(i)) / best.sd[k]);
+    }
+    if (largest < 1e-3) {
+      break;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+CameraFit fit_camera(const std::vector<PlateDot>& low,
+                     const std::vector<PlateDot>& high,
+                     double raised_mm,
+                     double plate_distance_mm) {
+  const TargetLook on_plate(low), raised(high.empty() ? low : high);
+  std::array<double, 10> start = {};
+  start[px_per_mm] = on_plate.px_per_mm;
+  start[aspect] = 1;
+  start[distance] = high.empty()
+                        ? plate_distance_mm
+                        : raised_mm * raised.px_per_mm / (on_plate.px_per_mm - raised.px_per_mm);
+  start[center_x] = on_plate.middle_px.x;
+  start[center_y] = on_plate.middle_px.y;
+  start[turn] = on_plate.turn;
+  start[turn_high] = raised.turn;
+  std::array<bool, 10> is_held = {};
+  is_held[distance] = is_held[turn_high] = is_held[shift_x] = is_held[shift_y] = high.empty();
+  const auto estimate = [&] { return estimate_camera({&low, &high}, raised_mm, start, is_held); };
+  CameraEstimate fit = estimate();
+  is_held[aspect] = std::abs(fit.p[aspect] - 1) < 3 * fit.sd[aspect];
+  is_held[k1] = std::abs(fit.p[k1]) < 3 * fit.sd[k1];
+  fit = estimate();
+  CameraFit found;
+  found.camera.plate_distance_mm = fit.p[distance];
+  found.camera.center_x_px = fit.p[center_x];
+  found.camera.center_y_px = fit.p[center_y];
+  found.camera.pitch_mm = 1 / fit.p[px_per_mm];
+  found.camera.pixel_aspect = fit.p[aspect];
+  found.camera.distortion_k1 = fit.p[k1];
+  found.residual_px = fit.residual_px;
+  found.pitch_sd_mm = fit.sd[px_per_mm] * found.camera.pitch_mm * found.camera.pitch_mm;
+  found.aspect_sd = fit.sd[aspect];
+  found.distance_sd_mm = fit.sd[distance];
+  found.center_sd_px = std::fmax(fit.sd[center_x], fit.sd[center_y]);
+  found.k1_sd = fit.sd[k1];
+  found.moved_mm = std::hypot(fit.p[shift_x], fit.p[shift_y]);
+  const Point2<double> middle = {fit.p[center_x], fit.p[center_y]};
+  for (const PlateDot& dot : low) {
+    const auto fitted = seen_at(constants(fit.p), dot.plate_mm, false, 0);
+    found.plot.points.push_back({norm(dot.plate_mm), norm(dot.picture_px - middle),
+                                 norm(Point2<double>{fitted.x.value, fitted.y.value} - middle)});
+  }
+  return found;
+}
+
+Outcome camera(const Path& recording, const DotPlate& plate) {
+  if (plate.rows < 3 || plate.cols < 3 || plate.rows % 2 == 0 || plate.cols % 2 == 0) {
+    replay::fail(recording, "the numbers of rows and columns of the target must be odd and >= 3");
+  }
+  const bool has_raised = plate.raised_mm > 0;
+  const std::vector<PlateDot> low = dots_of(recording / "plate", plate);
+  const std::vector<PlateDot> high =
+      has_raised ? dots_of(recording / "plate_raised", plate) : std::vector<PlateDot>{};
+  if (has_raised && !(TargetLook(high).px_per_mm < TargetLook(low).px_per_mm)) {
+    replay::fail(recording / "plate_raised",
+                 "the dots are not closer together than in plate/; check whether the two folders "
+                 "are exchanged");
+  }
+  CameraFit fit = fit_camera(low, high, plate.raised_mm, plate.plate_distance_mm);
+  fit.camera.refractive_index = plate.refractive_index;
+  const auto& found = fit.camera;
+  Report report{.what = "camera", .residual = fit.residual_px, .residual_unit = "px (dots)"};
+  report.parameters = {{"pitch_mm", found.pitch_mm, fit.pitch_sd_mm},
+                       {"center_x_px", found.center_x_px, fit.center_sd_px},
+                       {"center_y_px", found.center_y_px, fit.center_sd_px}};
+  if (has_raised) {
+    report.parameters.push_back({"plate_distance_mm", found.plate_distance_mm, fit.distance_sd_mm});
+    report.doubt(fit.distance_sd_mm > 0.02 * found.plate_distance_mm,
+                 "the distance is uncertain by more than 2 %: raise the target further");
+    // a center on the axis does not move
+    report.doubt(fit.moved_mm > 0.3,
+                 "the middle of the target moved by more than 0.3 mm when it was raised: it is not "
+                 "on the axis, it was shifted, or the camera is tilted");
+  }
+  Outcome outcome;
+  outcome.sections["camera"] = {{"plate_distance_mm", found.plate_distance_mm},
+                                {"refractive_index", plate.refractive_index},
+                                {"center_px", {found.center_x_px, found.center_y_px}},
+                                {"pitch_mm", found.pitch_mm}};
+  auto& section = outcome.sections["camera"];
+  if (found.pixel_aspect != 1) {
+    report.parameters.push_back({"pixel_aspect", found.pixel_aspect, fit.aspect_sd});
+    section["pitch_mm"] = {found.pitch_mm, found.pitch_mm * found.pixel_aspect};
+  }
+  if (found.distortion_k1 != 0) {
+    report.parameters.push_back({"distortion_k1", found.distortion_k1, fit.k1_sd});
+    section["distortion"] = {found.distortion_k1, 0};
+  }
+  if (plate.is_srgb) {
+    section["response"] = "srgb";
+  }
+  if (!plate.mosaic.empty()) {
+    section["mosaic"] = plate.mosaic;
+  }
+  report.doubt(fit.residual_px > 0.2,
+               "the dots deviate from their fit by more than 0.2 px: the camera is tilted, the "
+               "target is bent, or the lens distorts in another way");
+  outcome.reports = {report};
+  outcome.plots = {fit.plot};
+  return outcome;
+}
+
+}  // namespace calibrate

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "calibrate/report.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+#include "common/failure.hpp"
+#include "common/json_section.hpp"
+#include "common/sensor.hpp"
+
+namespace calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+json number_or_null(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+void write_whole(const fs::path& file, const std::string& text) {
+  const fs::path growing = file.string() + ".new";
+  {
+    std::ofstream stream(growing);
+    stream << text;
+    stream.close();
+    if (!stream) {
+      replay::fail(growing, "cannot be written");
+    }
+  }
+  std::error_code error;
+  fs::rename(growing, file, error);
+  if (error) {
+    replay::fail(file, "cannot be replaced: " + error.message());
+  }
+}
+
+/// The number in `entry`; null stands for an unknown value.
+double number_in(const fs::path& file, const std::string& name, const json& entry) {
+  if (!entry.is_number() && !entry.is_null()) {
+    replay::fail(file, name + " is " + entry.dump() + ", must be a number or null");
+  }
+  return entry.is_null() ? none : entry.get<double>();
+}
+
+}  // namespace
+
+void print(const Report& report) {
+  std::printf("%s\n", report.what.c_str());
+  for (const Parameter& p : report.parameters) {
+    if (std::isfinite(p.standard_error)) {
+      std::printf("  %-28s %11.5g +- %.2g\n", p.name.c_str(), p.value, p.standard_error);
+    } else {
+      std::printf("  %-28s %11.5g\n", p.name.c_str(), p.value);
+    }
+  }
+  std::printf("  %-28s %11.3g %s\n", "residual", report.residual, report.residual_unit.c_str());
+  if (report.verdict == Verdict::good) {
+    std::printf("  good\n");
+  } else {
+    std::printf("  doubtful, because %s\n", report.because.c_str());
+  }
+}
+
+void print(const Refusal& refusal) {
+  std::fprintf(stderr, "%s\n  refused, because %s\n", refusal.what.c_str(),
+               refusal.because.c_str());
+}
+
+json to_json(const Report& report) {
+  json parameters = json::object();
+  for (const Parameter& p : report.parameters) {
+    parameters[p.name] = {number_or_null(p.value), number_or_null(p.standard_error)};
+  }
+  json entry = {{"verdict", report.verdict == Verdict::good ? "good" : "doubtful"},
+                {"residual", number_or_null(report.residual)},
+                {"residual_unit", report.residual_unit},
+                {"parameters", parameters}};
+  if (!report.because.empty()) {
+    entry["because"] = report.because;
+  }
+  if (!report.covariance.empty()) {
+    entry["covariance"] = report.covariance;
+  }
+  return entry;
+}
+
+Report report_of(const fs::path& file, const std::string& what, const json& entry) {
+  const std::string name = "calibration." + what;
+  const replay::JsonSection section(file, name, entry,
+                                    {{"verdict", "good or doubtful"},
+                                     {"because", "why it is doubtful"},
+                                     {"residual", "residual of the fit"},
+                                     {"residual_unit", "unit of the residual"},
+                                     {"parameters", "by name: [value, standard error]"},
+                                     {"covariance", "covariance of the parameters"}});
+  Report report;
+  report.what = what;
+  report.verdict =
+      section.one_of("verdict", {"good", "doubtful"}) == "good" ? Verdict::good : Verdict::doubtful;
+  report.because = section.has("because") ? section.path("because") : "";
+  report.residual = number_in(file, name + ".residual", section.at("residual"));
+  report.residual_unit = section.path("residual_unit");
+  const json& parameters = section.at("parameters");
+  for (const auto& item : parameters.items()) {
+    const json& pair = item.value();
+    if (!parameters.is_object() || !pair.is_array() || pair.size() != 2) {
+      section.refuse("parameters must be { name: [value, standard error] }");
+    }
+    report.parameters.push_back({item.key(), number_in(file, name + "." + item.key(), pair[0]),
+                                 number_in(file, name + "." + item.key(), pair[1])});
+  }
+  if (section.has("covariance")) {
+    try {
+      report.covariance = section.at("covariance").get<std::vector<std::vector<double>>>();
+    } catch (const json::exception&) {
+      section.refuse("covariance must be rows of numbers [[...], ...]");
+    }
+  }
+  return report;
+}
+
+void save(const Outcome& outcome, const fs::path& file) {
+  json content = fs::exists(file) ? replay::parse_json(file) : json::object();
+  replay::expects_known_version(file, content);
+  content["version"] = replay::sensor_version;
+  for (const auto& item : outcome.sections.items()) {
+    if (item.value().is_object() && content.contains(item.key())) {
+      content[item.key()].update(item.value());  // keeps keys of other calibrations
+    } else {
+      content[item.key()] = item.value();
+    }
+  }
+  for (const Report& report : outcome.reports) {
+    content["calibration"][report.what] = to_json(report);
+  }
+  write_whole(file, content.dump(2) + "\n");
+}
+
+std::vector<Report> load_reports(const fs::path& file) {
+  const json content = replay::parse_json(file);
+  replay::expects_known_version(file, content);
+  std::vector<Report> reports;
+  if (content.contains("calibration")) {
+    for (const auto& item : content.at("calibration").items()) {
+      reports.push_back(report_of(file, item.key(), item.value()));
+    }
+  }
+  return reports;
+}
+
+void write_plot(const Plot& plot, const fs::path& file) {
+  std::string text =
+      plot.x + "," + plot.y + " " + plot.measured + "," + plot.y + " " + plot.fitted + "\n";
+  char line[96];
+  for (const PlotPoint& p : plot.points) {
+    std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g\n", p.x, p.measured, p.fitted);
+    text += line;
+  }
+  write_whole(file, text);
+}
+
+}  // namespace calibrate

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/foam/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/csv_cells.hpp"
+#include "common/failure.hpp"
+#include "common/median.hpp"
+#include "replay/foam/faults.hpp"
+
+namespace replay {
+namespace {
+
+namespace fs = std::filesystem;
+using Place = std::pair<int, int>;  // row and column
+
+constexpr int max_places = 4096;  // rows or columns
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Reads up to four digits from position `at`, which it advances; nullopt if none or too large.
+std::optional<int> digits(const std::string& text, std::size_t& at) {
+  const std::size_t first = at;
+  int number = 0;
+  for (; at < text.size() && at < first + 4 && text[at] >= '0' && text[at] <= '9'; ++at) {
+    number = 10 * number + (text[at] - '0');
+  }
+  return at > first && number < max_places ? std::optional<int>(number) : std::nullopt;
+}
+
+/// Parses a column name such as "r3_c0".
+std::optional<Place> place_of(const std::string& name) {
+  std::size_t at = 1;
+  if (name.empty() || name[0] != 'r') {
+    return {};
+  }
+  const auto row = digits(name, at);
+  if (!row || name.compare(at, 2, "_c") != 0) {
+    return {};
+  }
+  at += 2;
+  const auto col = digits(name, at);
+  return col && at == name.size() ? std::optional<Place>({*row, *col}) : std::nullopt;
+}
+
+std::string name_of(const Place& place) {
+  std::string name = "r";
+  name += std::to_string(place.first) + "_c" + std::to_string(place.second);
+  return name;
+}
+
+/// Positions of the columns in a line.
+struct Header {
+  std::vector<std::string> names;
+  std::size_t frame = 0;
+  std::size_t time = 0;
+  std::map<Place, std::size_t> taxels;
+  int rows = 0;
+  int cols = 0;
+};
+
+Header read_header(const fs::path& file, std::string line) {
+  if (line.rfind("\xEF\xBB\xBF", 0) == 0) {  // byte order mark, as spreadsheets write it
+    line.erase(0, 3);
+  }
+  const auto refuse = [&](const std::string& why) { fail(file, "line 1: " + why); };
+  if (const std::string why = wrong_separator(line); !why.empty()) {
+    refuse(why);
+  }
+  Header header;
+  header.names = cells_of(line);
+  std::map<std::string, std::size_t> others;
+  for (std::size_t k = 0; k < header.names.size(); ++k) {
+    const std::string& name = header.names[k];
+    const auto place = place_of(name);
+    if (!place && name != "frame" && name != "time_s") {
+      refuse("unknown column '" + name + "' (known: frame, time_s, r<row>_c<col>)");
+    }
+    if (!(place ? header.taxels.emplace(*place, k).second : others.emplace(name, k).second)) {
+      refuse("column " + name + " is given twice");
+    }
+    header.rows = place ? (std::max)(header.rows, place->first + 1) : header.rows;
+    header.cols = place ? (std::max)(header.cols, place->second + 1) : header.cols;
+  }
+  for (const char* name : {"frame", "time_s"}) {
+    if (others.count(name) == 0) {
+      refuse(std::string("column ") + name + " is missing");
+    }
+  }
+  header.frame = others["frame"];
+  header.time = others["time_s"];
+  if (header.taxels.empty()) {
+    refuse("there are no taxel columns r<row>_c<col>");
+  }
+  Place expected(0, 0);
+  for (const auto& [place, column] : header.taxels) {
+    if (place != expected) {
+      break;
+    }
+    expected = expected.second + 1 < header.cols ? Place(expected.first, expected.second + 1)
+                                                 : Place(expected.first + 1, 0);
+  }
+  if (expected.first < header.rows) {
+    refuse("column " + name_of(expected) + " is missing; the other columns belong to an array of " +
+           std::to_string(header.rows) + " x " + std::to_string(header.cols) + " taxels");
+  }
+  return header;
+}
+
+/// Sets `number` to NaN for an empty or non-finite text; returns false if it is not a number.
+bool read_number(const std::string& text, double& number) {
+  char* end = nullptr;
+  number = std::strtod(text.c_str(), &end);
+  if (*end != '\0') {
+    return false;
+  }
+  number = !text.empty() && std::isfinite(number) ? number : no_number;
+  return true;
+}
+
+class TableReader {
+ public:
+  explicit TableReader(const fs::path& file) : file_(file), stream_(file) {
+    std::string line;
+    if (!std::getline(stream_, line)) {
+      fail(file, "is empty or cannot be read");
+    }
+    header_ = read_header(file, line);
+    table_.rows = header_.rows;
+    table_.cols = header_.cols;
+  }
+
+  TaxelTable read() {
+    std::string line;
+    for (number_ = 2; std::getline(stream_, line); ++number_) {
+      cells_ = cells_of(line);
+      if (cells_.size() == 1 && cells_[0].empty()) {
+        continue;
+      }
+      if (const std::string why = wrong_separator(line); !why.empty()) {
+        refuse(why);
+      }
+      if (cells_.size() > header_.names.size()) {
+        refuse("has " + std::to_string(cells_.size()) + " values, but the header has only " +
+               std::to_string(header_.names.size()) +
+               " columns (decimals must be separated by '.')");
+      }
+      cells_.resize(header_.names.size());
+      add_line();
+    }
+    if (table_.frames.empty()) {
+      fail(file_, "holds no samples");
+    }
+    return std::move(table_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    fail(file_, "line " + std::to_string(number_) + ": " + why);
+  }
+
+  double value(std::size_t column) const {
+    double number = 0;
+    if (!read_number(cells_[column], number)) {
+      refuse(header_.names[column] + " '" + cells_[column] + "' is not a number");
+    }
+    return number;
+  }
+
+  void add_line() {
+    const double frame = value(header_.frame);
+    if (std::isfinite(frame) && (frame != std::floor(frame) || frame < 0 || frame > 1e9)) {
+      refuse("frame '" + cells_[header_.frame] + "' is not a whole number >= 0");
+    }
+    const int next = table_.frames.empty() ? 0 : table_.frames.back() + 1;
+    table_.frames.push_back(std::isfinite(frame) ? static_cast<int>(frame) : next);
+    const double time_s = value(header_.time);
+    table_.times_s.push_back(time_s);
+    table_.times.push_back(std::isfinite(time_s) ? cells_[header_.time] : "");
+    for (const auto& [place, column] : header_.taxels) {
+      table_.readings.push_back(value(column));
+      table_.missing += std::isfinite(table_.readings.back()) ? 0 : 1;
+    }
+  }
+
+  fs::path file_;
+  std::ifstream stream_;
+  Header header_;
+  TaxelTable table_;
+  std::vector<std::string> cells_;
+  int number_ = 1;
+};
+
+/// Median time step between samples; 0 if no step is positive.
+double median_step_s(const std::vector<double>& times_s) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times_s.size(); ++k) {
+    const double step = times_s[k] - times_s[k - 1];
+    if (std::isfinite(step) && step > 0) {
+      steps.push_back(step);
+    }
+  }
+  return steps.empty() ? 0 : median_of(steps);
+}
+
+void expects_seconds(const fs::path& file, double step_s) {
+  constexpr double longest_s = 5;
+  if (step_s > longest_s) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", step_s);
+    const char* const unit = step_s < 5e3   ? "If the unit is ms, divide by 1000"
+                             : step_s < 5e6 ? "If the unit is us, divide by 1,000,000"
+                                            : "If the unit is ns, divide by 1,000,000,000";
+    fail(file, std::string("time_s: the median interval is ") + text +
+                   " s, but must be at most 5 s. " + unit);
+  }
+}
+
+bool share_taxels(const FingerPlace& a, const FingerPlace& b) {
+  return a.first_row < b.first_row + b.rows && b.first_row < a.first_row + a.rows &&
+         a.first_col < b.first_col + b.cols && b.first_col < a.first_col + a.cols;
+}
+
+void check_fingers(const fs::path& file, const FoamRecording& recording) {
+  const auto& fingers = recording.sensor.fingers;
+  for (std::size_t k = 0; k < fingers.size(); ++k) {
+    const FingerPlace& place = fingers[k];
+    const std::string name = "foam.fingers[" + std::to_string(k) + "]";
+    // written so that no sum overflows
+    if (place.rows > recording.table.rows - place.first_row ||
+        place.cols > recording.table.cols - place.first_col) {
+      fail(file, name + " extends beyond the array, which has " +
+                     std::to_string(recording.table.rows) + " x " +
+                     std::to_string(recording.table.cols) + " taxels in taxels.csv");
+    }
+    for (std::size_t other = 0; other < k; ++other) {
+      if (share_taxels(fingers[other], place)) {
+        fail(file, name + " shares taxels with foam.fingers[" + std::to_string(other) + "]");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TaxelTable read_taxels(const fs::path& file) {
+  return TableReader(file).read();
+}
+
+fingerpad::StridedView<const double> FoamRecording::finger(int sample, int finger) const {
+  const FingerPlace& place = sensor.fingers[static_cast<std::size_t>(finger)];
+  const double* const all =
+      table.readings.data() + static_cast<std::size_t>(sample) * table.taxels();
+  return {all + place.first_row * table.cols + place.first_col, place.rows, place.cols, table.cols};
+}
+
+std::string taxel_name(const TaxelTable& table, std::size_t taxel) {
+  const int at = static_cast<int>(taxel);
+  return name_of(Place{at / table.cols, at % table.cols});
+}
+
+double FoamRecording::seconds_in(double stated_s) const {
+  const auto first = std::find_if(table.times_s.begin(), table.times_s.end(),
+                                  [](double time_s) { return std::isfinite(time_s); });
+  return first != table.times_s.end() && *first > stated_s ? *first + stated_s : stated_s;
+}
+
+bool is_foam_recording(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "taxels.csv", error);
+}
+
+FoamRecording open_foam_recording(const fs::path& folder) {
+  FoamRecording recording;
+  FoamSensor& sensor = recording.sensor;
+  sensor = read_foam_sensor(folder / "sensor.json");
+  recording.table = read_taxels(folder / "taxels.csv");
+  if (sensor.fingers.empty()) {
+    sensor.fingers = {{0, recording.table.rows, 0, recording.table.cols}};
+  }
+  check_fingers(folder / "sensor.json", recording);
+  fingerpad::TaxelOptions& taxels = sensor.taxels;
+  const double measured_s = median_step_s(recording.table.times_s);
+  expects_seconds(folder / "taxels.csv", measured_s);
+  const double by_default_s = measured_s > 0 ? measured_s : taxels.sample_period_s;
+  taxels.sample_period_s = sensor.sample_period_s.value_or(by_default_s);
+  // the steps of a slow recording must not count as gaps
+  taxels.longest_gap_s =
+      sensor.longest_gap_s.value_or((std::max)(taxels.longest_gap_s, 4 * taxels.sample_period_s));
+  repair_readings(folder, recording);
+  return recording;
+}
+
+}  // namespace replay

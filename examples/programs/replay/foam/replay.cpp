@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#include "replay/foam/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "common/failure.hpp"
+#include "common/images.hpp"
+#include "common/interrupt.hpp"
+#include "common/output.hpp"
+#include "common/progress.hpp"
+#include "fingerpad/core/check.hpp"
+#include "replay/foam/activity.hpp"
+#include "replay/foam/array_picture.hpp"
+#include "replay/foam/axis.hpp"
+#include "replay/foam/chart.hpp"
+#include "replay/foam/frequency_picture.hpp"
+#include "replay/foam/step.hpp"
+#include "replay/foam/table.hpp"
+
+namespace replay {
+namespace {
+
+using fingerpad::TaxelStatus;
+
+FoamStep make_step(const Options& options,
+                   const FoamRecording& recording,
+                   const std::vector<FoamNoise>& noise) {
+  try {
+    return FoamStep(recording, noise);
+  } catch (const fingerpad::parameter_error& error) {
+    fail(options.recording, error.what());
+  }
+}
+
+std::string alarm_words(const FoamRow& row) {
+  const std::string when = row.time_s.empty() ? "" : ", t = " + row.time_s + " s";
+  return "frame " + std::to_string(row.frame) + when + ": " + row.alarm.names();
+}
+
+void write_pictures(const OutputFolder& output,
+                    const Options& options,
+                    const FoamRecording& recording,
+                    const std::vector<FoamNoise>& noise,
+                    const std::vector<FoamRow>& rows) {
+  const std::string name = std::filesystem::canonical(options.recording).filename().string();
+  const auto alarm = first_alarm(rows);
+  const std::string title =
+      name + ": " + (alarm ? "first alarm in " + alarm_words(rows[*alarm]) : "no alarm");
+  const auto shown = shown_rows(rows, static_cast<int>(recording.sensor.taxels.window));
+  const FoamActivity activity = activity_of(recording, noise, rows, shown, max_frequency_bins);
+  write_picture(output.file("pictures", "preslip.png"), foam_chart(title, recording, rows));
+  write_picture(output.file("pictures", "array.png"),
+                foam_array_picture(title, recording, rows, shown, activity));
+  write_picture(output.file("pictures", "frequency.png"),
+                foam_frequency_picture(title, recording, rows, activity));
+}
+
+void print_fingers(const FoamRecording& recording, const std::vector<FoamNoise>& noise) {
+  for (std::size_t f = 0; f < noise.size(); ++f) {
+    const FingerPlace& place = recording.sensor.fingers[f];
+    double least = 0;
+    double most = 0;
+    int dead = 0;
+    for (const double deviation : noise[f].deviations) {
+      if (std::isfinite(deviation)) {
+        least = most > 0 ? (std::min)(least, deviation) : deviation;
+        most = (std::max)(most, deviation);
+      } else {
+        ++dead;
+      }
+    }
+    std::printf("%s %d x %d taxels, noise %.3g to %.3g (%s)%s\n",
+                f == 0 ? "fingers     " : "            ", place.rows, place.cols, least, most,
+                noise[f].source.c_str(),
+                dead > 0 ? (", " + std::to_string(dead) + " dead").c_str() : "");
+  }
+}
+
+void print_summary(const Options& options,
+                   const FoamRecording& recording,
+                   const std::vector<FoamNoise>& noise,
+                   const std::vector<FoamRow>& rows,
+                   const FoamStep& step,
+                   const std::filesystem::path& place) {
+  const auto count = [&](const auto& is) { return std::count_if(rows.begin(), rows.end(), is); };
+  std::printf("samples      %zu, every %.4g ms (median)\n", rows.size(),
+              1000 * recording.sensor.taxels.sample_period_s);
+  print_fingers(recording, noise);
+  if (recording.table.missing > 0) {
+    std::printf("missing      %lld readings in the whole recording\n", recording.table.missing);
+  }
+  for (const Finding& finding : recording.told) {
+    std::printf("%-12s %s: %s\n", finding.is_wrong ? "left out" : "zero", finding.place.c_str(),
+                finding.what.c_str());
+  }
+  const auto not_taken = count([](const FoamRow& row) { return !row.was_taken(); });
+  if (not_taken > 0) {
+    std::printf("left out     %td samples: the time is missing or not later than before\n",
+                not_taken);
+  }
+  std::printf("vibrating    in %td samples\n", count([](const FoamRow& row) {
+                return std::any_of(row.fingers.begin(), row.fingers.end(), [](const auto& finger) {
+                  return finger.status == TaxelStatus::vibrating;
+                });
+              }));
+  const auto alarm = first_alarm(rows);
+  std::printf("first alarm  %s\n", alarm ? alarm_words(rows[*alarm]).c_str() : "none");
+  if (alarm) {
+    std::printf("alarms       in %td samples\n",
+                count([](const FoamRow& row) { return row.alarm.any(); }));
+  }
+  std::printf("step         %.2f us per sample (median)\n", step.median_us());
+  std::printf("table        %s\n", (place / "frames.csv").c_str());
+  if (options.pictures) {
+    std::printf("pictures     %s; start with preslip.png\n", (place / "pictures").c_str());
+  }
+}
+
+}  // namespace
+
+int run_foam(const Options& options) {
+  const FoamRecording recording = open_foam_recording(options.recording);
+  const Range range = within(options.range, recording.table.samples(), options.recording);
+  std::vector<FoamNoise> noise;
+  for (int f = 0; f < recording.fingers(); ++f) {
+    noise.push_back(noise_of(recording, f));
+  }
+  FoamStep step = make_step(options, recording, noise);
+  watch_for_interrupts();
+  OutputFolder output(options.out);
+  FoamCsv table(output.file("frames.csv"), recording);
+  std::vector<FoamRow> rows;
+  const int total = *range.last - range.first;
+  {
+    const Progress progress(total);
+    for (int done = 0; done < total; ++done) {
+      progress.show(done);
+      if (is_interrupted()) {
+        return 130;
+      }
+      rows.push_back(step(range.first + done));
+      table.write(rows.back());
+    }
+  }
+  table.close();
+  if (options.pictures) {
+    write_pictures(output, options, recording, noise, rows);
+  }
+  if (is_interrupted()) {
+    return 130;
+  }
+  output.publish();
+  print_summary(options, recording, noise, rows, step, output.place());
+  return 0;
+}
+
+}  // namespace replay

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// The output of replay for a gel pad with dots: slide.csv, a picture of each frame, and one chart.
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include "common/output.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/gel/free_pad.hpp"
+#include "replay/gel/slide_picture.hpp"
+#include "replay/gel/slide_step.hpp"
+#include "replay/replay.hpp"
+
+namespace replay {
+
+class GelReplay {
+ public:
+  /// For `total` frames. Options and output must outlive this object. Throws Failure, as do the
+  /// functions below.
+  GelReplay(Recording& recording,
+            const Options& options,
+            const DotSource& dots,
+            const OutputFolder& output,
+            int total);
+
+  void operator()(int frame, const std::string& time_s, const cv::Mat& image, const DotGrid& dots);
+  /// Writes the results over all frames.
+  void finish();
+  void print_summary() const;
+
+ private:
+  void write_row(const GelRow& row);
+
+  const Options& options_;
+  const OutputFolder& output_;
+  FreePad free_;
+  SlideStep step_;
+  std::filesystem::path file_;
+  std::ofstream table_;
+  std::vector<GelRow> rows_;
+  std::vector<GelScene> shown_;
+  int total_;
+};
+
+}  // namespace replay

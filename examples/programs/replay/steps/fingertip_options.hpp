@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+#pragma once
+// Converts sensor.json and the free pad to options of pipeline/fingertip.hpp. The library itself
+// reads no files.
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/recording.hpp"
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/pipeline/fingertip_options.hpp"
+#include "replay/dots/grid.hpp"
+
+namespace replay {
+
+/// `use(red, green)` of an OpenCV image in BGR order, of 8 or 16 bit.
+template <class Use>
+auto with_colors(const cv::Mat& image, const Use& use) {
+  return image.depth() == CV_16U ? use(fingerpad::channel<std::uint16_t>(image, 2),
+                                       fingerpad::channel<std::uint16_t>(image, 1))
+                                 : use(fingerpad::channel<std::uint8_t>(image, 2),
+                                       fingerpad::channel<std::uint8_t>(image, 1));
+}
+
+/// Options together with the points that they view.
+struct FingertipSettings {
+  fingerpad::FingertipOptions options;
+  std::vector<fingerpad::Point3<double>> free_dots_mm = {};
+
+  explicit FingertipSettings(fingerpad::FingertipOptions of) : options(std::move(of)) {}
+  FingertipSettings(FingertipSettings&&) = default;
+};
+
+/// `free_dots_px` are the free pad's dots, maybe empty. The contact threshold comes from
+/// sensor.json, else from the free pad's known shape. options.free_depth_mm, which neighbour light
+/// needs, is not set. The recording must outlive the settings. Throws fingerpad::parameter_error.
+FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px);
+
+/// Says that the pressure is too low to make the free pad as high as it is; empty if it is not.
+std::string fault_of_pressure(const Recording& recording);
+
+/// Why a recording has no six-axis forces; empty if it has them.
+std::string lacking_for_wrench(const Recording& recording);
+
+/// A fingertip with these settings, compiled once for all programs.
+class RecordedFingertip {
+ public:
+  explicit RecordedFingertip(const FingertipSettings& settings);
+  ~RecordedFingertip();
+
+  /// See fingerpad::Fingertip.
+  fingerpad::FingertipResult operator()(const cv::Mat& frame,
+                                        const DotGrid& dots_px,
+                                        double pressure_mpa,
+                                        double time_s,
+                                        std::span<const fingerpad::Mark> side_dots = {});
+
+ private:
+  struct Whole;
+  std::unique_ptr<Whole> whole_;
+};
+
+}  // namespace replay
