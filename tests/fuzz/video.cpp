@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 // A recording whose video has any bytes in it: it is read, or refused by one line. A decoder may
 // crash; this process may not.
-// with: examples/programs/common/recording.cpp examples/programs/replay/io/video.cpp
+// with: examples/programs/common/recording.cpp examples/programs/common/video.cpp
 // with: examples/programs/common/capture.cpp examples/programs/replay/live/frames.cpp
-// with: examples/programs/common/sensor.cpp examples/programs/replay/io/number_table.cpp
-// with: examples/programs/common/signals.cpp examples/programs/replay/io/images.cpp
-// with: examples/programs/common/stress_free_dots.cpp examples/programs/replay/io/true_forces.cpp
+// with: examples/programs/common/sensor.cpp examples/programs/common/number_table.cpp
+// with: examples/programs/common/signals.cpp examples/programs/common/images.cpp
+// with: examples/programs/common/stress_free_dots.cpp examples/programs/common/true_forces.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs -lopencv_videoio
 // The thread that watches memory may hold a lock of the address sanitizer at a fork.
 // options: -rss_limit_mb=0
