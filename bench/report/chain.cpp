@@ -20,7 +20,7 @@
 
 #include "chain/event_counter.hpp"
 #include "chain/pressed_frames.hpp"
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 
 using namespace fingerpad;
 using chain::touch_of;

@@ -3,7 +3,7 @@
 // The tables of docs/hard_cases.md. First table: the loss of accuracy of the published or textbook
 // form of a formula in its hard cases, and that of fingerpad's form, in float and in double against
 // 50 digits. Inputs are rounded to the type first, so the whole error belongs to the form.
-// tests/hard_cases/naive_forms.cpp asserts every row. Second table: cases that are hard in any
+// tests/figures/naive_forms.cpp asserts every row. Second table: cases that are hard in any
 // number type.
 #include <iostream>
 

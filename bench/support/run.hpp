@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 
 namespace bench {
 

@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/contact_measures.hpp"
 #include "support/generators.hpp"

@@ -11,7 +11,7 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"

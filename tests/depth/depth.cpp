@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
+// Properties for every sensor, every frame and every window.
 #include "fingerpad/depth/depth.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <thread>
@@ -17,20 +20,25 @@
 #include <utility>
 #include <vector>
 
+#include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/published/depth.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
+#include "support/rotated.hpp"
 
 using namespace fingerpad;
+using test::Digits50;
 using test::Dual;
 using test::Frame;
 using test::Image;
+using test::mirrored;
 using test::Pad;
 using test::refusal;
-
-// The reference of the free pad.
+using test::transposed;
 
 namespace {
 
@@ -1371,4 +1379,743 @@ TEST_CASE("an estimator refuses what cannot be, and says why", "[depth]") {
   CHECK_THAT(with_reference([](auto& r) { r.red_gain.push_back(1); }), StartsWith(planes));
   CHECK_THAT(with_reference([](auto& r) { r.pixels_used = 0; }), StartsWith(planes));
   CHECK(refusal([&] { DepthEstimator<>(pad.camera, pad.fluid, reference); }) == "accepted");
+}
+
+namespace {
+
+namespace bound_mm {
+constexpr double bisection = 14.0 / 32768 + 1e-9;  // its half-width, 16 halvings of 14 mm
+constexpr double newton = 1e-10;                   // roundoff of g, of the rays and of the colours
+constexpr double polynomial = 1e-9;                // wider cameras need more powers of u
+// Single floats of up to 60 grey levels (spacing 3.8e-6) where F rises by more than 1 level per mm.
+constexpr double single = 2e-4;
+constexpr double anchored_8_bit = 1e-3;  // 1/128 of a grey level, the step of the stored residuals
+}  // namespace bound_mm
+
+/// Any camera, fluid and pad; small, so that hundreds of them are fast.
+Pad any_pad() {
+  Pad pad;
+  pad.rows = test::whole(14, 26);
+  pad.cols = test::whole(14, 26);
+  pad.camera.plate_distance_mm = test::uniform(40, 100);
+  pad.camera.refractive_index = test::uniform(1.2, 1.6);
+  pad.camera.pitch_mm = test::uniform(1.2, 2);
+  pad.camera.center_x_px = static_cast<double>(pad.cols) / 2 + test::uniform(-2, 1);
+  pad.camera.center_y_px = static_cast<double>(pad.rows) / 2 + test::uniform(-2, 1);
+  pad.camera.plate_thickness_mm = test::whole(0, 1) == 0 ? 0 : test::uniform(0, 10);
+  pad.fluid.c_red_per_mm = test::uniform(0.02, 0.04);
+  pad.fluid.c_green_per_mm =
+      pad.fluid.c_red_per_mm + (test::whole(0, 3) == 0 ? 0 : test::uniform(0, 0.01));
+  pad.fluid.kappa = test::uniform(0.8, 1.2);
+  // Only g h^2 matters: the light scattered back stays between a few and some 50 grey levels.
+  const double h = pad.camera.refractive_index * pad.camera.plate_distance_mm;
+  pad.scattering = test::uniform(0.008, 0.02) * square(66.5 / h);
+  pad.scattering_loss = test::uniform(0, 0.1);
+  pad.brightness = test::uniform(30, 60);
+  pad.height_mm = test::uniform(6, 13.5);
+  return pad;
+}
+
+/// Depth of each pixel by itself, by polynomials.
+template <class S>
+struct Rows {
+  using Scalar = S;
+  static constexpr bool one_height = false;
+  static constexpr double bound =
+      std::is_same_v<S, float> ? bound_mm::single : bound_mm::polynomial;
+
+  static Image<S> depth_of(const Pad& pad, const Frame<S>& frame) {
+    auto e = test::estimate(pad.estimator<S>({.window_px = 1}), frame);
+    RC_ASSERT(e.result.status != FrameStatus::refused);
+    return e.depth_mm;
+  }
+};
+
+/// The same by Newton's method.
+template <class S>
+struct Newton {
+  using Scalar = S;
+  static constexpr bool one_height = false;
+  static constexpr double bound = std::is_same_v<S, float> ? bound_mm::single : bound_mm::newton;
+
+  static Image<S> depth_of(const Pad& pad, const Frame<S>& frame) {
+    Image<S> depth(pad.rows, pad.cols, not_a_number<S>());
+    const auto reference = pad.reference<S>();
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        if (reference.in_pad(i, j)) {
+          const auto light = pad.pencil(i, j);
+          depth(i, j) =
+              newton_depth(cast<S>(pad.fluid),
+                           Pencil<S>{S(light.path_factor),
+                                     {S(light.height.meridional_mm), S(light.height.sagittal_mm)}},
+                           reference.g(i, j), Colour<S>{frame.red(i, j), frame.green(i, j)})
+                  .depth_mm;
+        }
+      }
+    }
+    return depth;
+  }
+};
+
+/// As printed. It has no plate, and takes one height for both directions of a pencil.
+struct Printed {
+  using Scalar = double;
+  static constexpr bool one_height = true;
+  static constexpr double bound = bound_mm::bisection;
+
+  static Image<double> depth_of(const Pad& pad, const Frame<double>& frame) {
+    const auto free = pad.free_depths();
+    const auto free_frame = pad.frame<double>(free);
+    published::DepthEstimator<> estimator(pad.published(1), free_frame.red, free_frame.green, free);
+    Image<double> depth(pad.rows, pad.cols);
+    RC_ASSERT(estimator(frame.red, frame.green, depth));
+    return depth;
+  }
+};
+
+/// A pad that the way can see.
+template <class Way>
+Pad any_pad_of() {
+  Pad pad = any_pad();
+  pad.one_height = Way::one_height;
+  pad.camera.plate_thickness_mm = Way::one_height ? 0 : pad.camera.plate_thickness_mm;
+  return pad;
+}
+
+/// Makes some pixels dark, saturated or, if the type allows it, NaN.
+template <class Pixel>
+void spoil(Frame<Pixel>& frame, int share) {
+  for (Index i = 0; i < frame.red.rows(); ++i) {
+    for (Index j = 0; j < frame.red.cols(); ++j) {
+      if (test::whole(0, 99) >= share) {
+        continue;
+      }
+      Pixel bad = Pixel(0);
+      const auto kind = test::whole(0, 2);
+      if (kind == 1) {
+        bad = test::stored<Pixel>(255);
+      } else if (kind == 2 && !std::is_integral_v<Pixel>) {
+        bad = static_cast<Pixel>(test::nan);
+      }
+      (test::whole(0, 1) == 0 ? frame.red : frame.green)(i, j) = bad;
+    }
+  }
+}
+
+template <class Pixel, class Turn>
+Frame<Pixel> rotated(const Frame<Pixel>& frame, const Turn& turn) {
+  Frame<Pixel> out(0, 0);
+  out.red = turn(frame.red);
+  out.green = turn(frame.green);
+  return out;
+}
+
+/// Largest difference; infinite where only one is NaN.
+template <class S>
+double difference(const Image<S>& a, const Image<S>& b) {
+  return (std::max)(test::largest_error(a, b), test::largest_error(b, a));
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("what the forward model shows, the inverse finds",
+                   "[depth][law]",
+                   Rows<float>,
+                   Rows<double>,
+                   Newton<float>,
+                   Newton<double>,
+                   Printed) {
+  rc::prop("on random sensors, with printed dots", [] {
+    using S = typename TestType::Scalar;
+    const Pad pad = any_pad_of<TestType>();
+    const auto depth = pad.pressed_depths(test::uniform(0, 5));
+    const auto found = TestType::depth_of(pad, pad.frame<S>(depth));
+    RC_ASSERT(test::largest_error(found, depth) <= TestType::bound);
+  });
+}
+
+TEMPLATE_TEST_CASE("the membrane's brightness does not matter",
+                   "[depth][law]",
+                   Rows<double>,
+                   Newton<double>,
+                   Printed) {
+  rc::prop("pixel by pixel", [] {
+    const Pad pad = any_pad_of<TestType>();
+    const auto depth = pad.pressed_depths(test::uniform(0, 5));
+    Frame<double> frame(pad.rows, pad.cols);
+    const double low = test::uniform(1, 40);  // at most tripled, so nothing saturates
+    for (Index i = 0; i < pad.rows; ++i) {
+      for (Index j = 0; j < pad.cols; ++j) {
+        const double bright = low * (1 + static_cast<double>((7 * i + 3 * j) % 5) / 2);
+        const auto c = pad.colour(i, j, depth(i, j) == depth(i, j) ? depth(i, j) : 1.0, bright);
+        frame.red(i, j) = c.red;
+        frame.green(i, j) = c.green;
+      }
+    }
+    const auto found = TestType::depth_of(pad, frame);
+    RC_ASSERT(test::largest_error(found, depth) <= 3 * TestType::bound);
+  });
+}
+
+TEST_CASE("units do not matter", "[depth][law]") {
+  const auto depth_of = [](const Pad& pad, const Frame<double>& frame, double levels) {
+    const auto scale = GreyScale{levels, 0, 255 * levels};
+    const auto free = pad.free_depths();
+    const auto free_frame = pad.frame<double>(free);
+    const auto reference =
+        fit_reference<double>(pad.camera, pad.fluid, free_frame.red, free_frame.green, free, scale);
+    DepthEstimator<double> estimator(pad.camera, pad.fluid, reference,
+                                     {.window_px = 3, .scale = scale});
+    return test::estimate(estimator, frame).depth_mm;
+  };
+  rc::prop("lengths times a, absorption and scattering divided: depth times a", [&] {
+    const Pad pad = any_pad();
+    const double a = test::log_uniform(0.1, 10);
+    Pad large = pad;
+    large.camera.plate_distance_mm *= a;
+    large.camera.pitch_mm *= a;
+    large.camera.plate_thickness_mm *= a;
+    large.sphere_radius_mm *= a;
+    large.height_mm *= a;
+    large.fluid.c_red_per_mm /= a;
+    large.fluid.c_green_per_mm /= a;
+    large.fluid.max_depth_mm *= a;
+    large.scattering /= a * a;
+    const double press = test::uniform(0, 5);
+    auto expected = depth_of(pad, pad.frame<double>(pad.pressed_depths(press)), 1);
+    for (double& l : expected.cells) {
+      l *= a;
+    }
+    const auto frame = large.frame<double>(large.pressed_depths(a * press));
+    RC_ASSERT(difference(depth_of(large, frame, 1), expected) <= a * bound_mm::newton);
+  });
+  rc::prop("intensities times two, to the last bit", [&] {
+    const Pad pad = any_pad();
+    auto frame = pad.frame<double>(pad.pressed_depths(test::uniform(0, 5)));
+    spoil(frame, 10);
+    const auto once = depth_of(pad, frame, 1);
+    Pad twice = pad;
+    twice.brightness *= 2;
+    twice.scattering *= 2;
+    for (auto* channel : {&frame.red, &frame.green}) {
+      for (double& x : channel->cells) {
+        x *= 2;
+      }
+    }
+    RC_ASSERT(test::same_bits(depth_of(twice, frame, 2), once));
+  });
+}
+
+TEMPLATE_TEST_CASE("more red is deeper, more green is less deep",
+                   "[depth][law]",
+                   Rows<float>,
+                   Newton<double>,
+                   Printed) {
+  rc::prop("at every pixel", [] {
+    using S = typename TestType::Scalar;
+    const Pad pad = any_pad_of<TestType>();
+    const auto frame = pad.frame<S>(pad.pressed_depths(test::uniform(0, 5)));
+    auto redder = frame;
+    auto greener = frame;
+    const S more = S(test::uniform(0.01, 0.5));
+    for (S& x : redder.red.cells) {
+      x += more;
+    }
+    for (S& x : greener.green.cells) {
+      x += more;
+    }
+    const auto before = TestType::depth_of(pad, frame);
+    const auto red = TestType::depth_of(pad, redder);
+    const auto green = TestType::depth_of(pad, greener);
+    // beyond the range there is no depth, or, as printed, its end
+    const S end = S(TestType::one_height ? 2 * bound_mm::bisection : 0);
+    const S deepest = S(pad.fluid.max_depth_mm) - end;
+    for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
+      const S l = before.cells[k];
+      if (is_finite(l) && l > end && l < deepest) {
+        RC_ASSERT(!is_finite(red.cells[k]) || red.cells[k] > l);
+        RC_ASSERT(!is_finite(green.cells[k]) || green.cells[k] < l);
+      }
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE("a mirrored or transposed frame gives the mirrored or transposed depth",
+                   "[depth][law]",
+                   std::uint8_t,
+                   std::uint16_t,
+                   float) {
+  rc::prop("when the camera's center goes with it", [] {
+    using Pixel = TestType;
+    const Pad pad = any_pad();
+    auto frame = pad.frame<Pixel>(pad.pressed_depths(test::uniform(0, 5)), 1, 7);
+    spoil(frame, 10);
+    const auto depth_of = [&](const Pad& p, const Frame<Pixel>& f) {
+      return test::estimate(p.estimator<float>({.window_px = 5}), f).depth_mm;
+    };
+    const auto depth = depth_of(pad, frame);
+    Pad mirror = pad;
+    mirror.camera.center_x_px = static_cast<double>(pad.cols - 1) - pad.camera.center_x_px;
+    // the reference's depths differ by roundoff and, in 8 bit, so does the step of storage
+    const auto flip = [](const auto& image) { return mirrored(image); };
+    RC_ASSERT(difference(depth_of(mirror, rotated(frame, flip)), mirrored(depth)) <=
+              bound_mm::anchored_8_bit);
+    Pad turn = pad;
+    std::swap(turn.rows, turn.cols);
+    std::swap(turn.camera.center_x_px, turn.camera.center_y_px);
+    const auto swap = [](const auto& image) { return transposed(image); };
+    RC_ASSERT(difference(depth_of(turn, rotated(frame, swap)), transposed(depth)) <=
+              bound_mm::anchored_8_bit);
+  });
+}
+
+namespace {
+
+template <class P, class S>
+struct Kind {
+  using Pixel = P;
+  using Scalar = S;
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("bands of rows give the bits of the whole frame, and the counts add up",
+                   "[depth][law]",
+                   (Kind<std::uint8_t, float>),
+                   (Kind<std::uint16_t, float>),
+                   (Kind<float, float>),
+                   (Kind<std::uint8_t, double>),
+                   (Kind<double, double>)) {
+  rc::prop("for any band", [] {
+    using S = typename TestType::Scalar;
+    using Pixel = typename TestType::Pixel;
+    Pad pad = any_pad();
+    pad.rows += test::whole(0, 50);  // more than the rows after which running sums restart
+    auto frame = pad.frame<Pixel>(pad.pressed_depths(test::uniform(0, 5)), 1, 3);
+    spoil(frame, static_cast<int>(test::whole(0, 40)));
+    // any odd window, so that restarts and borders fall everywhere
+    const int window_px = 1 + 2 * static_cast<int>(test::whole(0, 10));
+    auto estimator = pad.estimator<S>({.window_px = window_px});
+    const auto whole = test::estimate(estimator, frame);
+
+    test::Estimate<S> bands(pad.rows, pad.cols);
+    const Index a = test::whole(0, pad.rows);
+    const Index b = test::whole(a, pad.rows);
+    std::array<Index, pixel_status_count> count = {};
+    const std::pair<Index, Index> rows_of[] = {{b, pad.rows}, {0, a}, {a, b}};  // in any order
+    for (const auto& [first, last] : rows_of) {
+      const auto result =
+          estimator.band(first, last, frame.red, frame.green, bands.depth_mm, bands.status);
+      RC_ASSERT(result.ok());
+      RC_ASSERT(std::accumulate(result.count.begin(), result.count.end(), Index(0)) ==
+                (last - first) * pad.cols);
+      for (std::size_t k = 0; k < count.size(); ++k) {
+        count[k] += result.count[k];
+      }
+    }
+    RC_ASSERT(test::same_bits(bands.depth_mm, whole.depth_mm));
+    RC_ASSERT(bands.status.cells == whole.status.cells);
+    RC_ASSERT(count == whole.result.count);
+    std::array<Index, pixel_status_count> seen = {};
+    Index numbers = 0;
+    for (std::size_t k = 0; k < whole.status.cells.size(); ++k) {
+      ++seen[static_cast<std::size_t>(whole.status.cells[k])];
+      numbers += is_finite(whole.depth_mm.cells[k]) ? 1 : 0;
+    }
+    RC_ASSERT(seen == whole.result.count);
+    RC_ASSERT(numbers == whole.result.valid_pixels());
+  });
+}
+
+namespace {
+
+namespace bound_mm {
+constexpr double newton_double = 1e-12;  // documented for newton_depth()
+// A float colour of 57 grey levels has a resolution of 3.8e-6; F rises by at least 1.3 grey levels
+// per mm and is itself rounded to a few such units.
+constexpr double newton_float = 2e-5;
+constexpr double polynomial_double = 1e-12;  // documented for detail::DepthPolynomial
+constexpr double polynomial_float = 1e-5;
+constexpr double smallest = 1e-6;
+constexpr double deepest = 14;
+}  // namespace bound_mm
+
+/// The published numbers; delta from 0 to the published 0.0046 per mm.
+Absorption<double> fluid_with(double delta_per_mm, double max_depth_mm = 18) {
+  Absorption<double> fluid;
+  fluid.c_green_per_mm = fluid.c_red_per_mm + delta_per_mm;
+  fluid.max_depth_mm = max_depth_mm;
+  return fluid;
+}
+const double published_delta =
+    Absorption<double>().c_green_per_mm - Absorption<double>().c_red_per_mm;
+const std::vector<double> deltas = {0, 1e-4, published_delta};
+constexpr double brightness = 57;
+constexpr double scattering = 0.0163;
+
+/// One row of pixels from the axis to the rim of a pad with a base radius of 18.735 mm.
+constexpr Index pixels_to_rim = 235;
+Camera<double> camera_at_corner() {
+  Camera<double> camera;
+  camera.center_x_px = 0;
+  camera.center_y_px = 0;
+  return camera;
+}
+
+template <class S>
+Pencil<S> as(const Pencil<double>& p) {
+  return {S(p.path_factor), {S(p.height.meridional_mm), S(p.height.sagittal_mm)}};
+}
+
+/// F in the slides' closed form, independent of the library's series.
+struct ExactEquation {
+  Digits50 c, delta, k, product, sum, kappa_red, green, g;
+
+  template <class S>
+  ExactEquation(const Absorption<S>& fluid,
+                const Pencil<Digits50>& p,
+                const Digits50& scatter,
+                const Colour<S>& colour)
+      : c(fluid.c_red_per_mm),
+        delta(Digits50(fluid.c_green_per_mm) - Digits50(fluid.c_red_per_mm)),
+        k(p.path_factor),
+        product(p.height.meridional_mm * p.height.sagittal_mm),
+        sum(p.height.meridional_mm + p.height.sagittal_mm),
+        kappa_red(Digits50(fluid.kappa) * Digits50(colour.red)),
+        green(colour.green),
+        g(scatter) {}
+
+  /// From a depth with an error of about 1e-3 mm, five Newton steps give fifty digits.
+  Digits50 root(double near) const {
+    const Digits50 ck = c * k;
+    const Digits50 q1 = (product + (sum + 2 / ck) / ck) / k;
+    Digits50 l(near);
+    for (int step = 0; step < 5; ++step) {
+      const Digits50 decay = exp(Digits50(-ck * l));
+      const Digits50 membrane = green * exp(Digits50(delta * k * l));
+      const Digits50 q2 = (l * l + sum * l + 2 * l / ck) / k;
+      const Digits50 scatter_slope = c * (l * l + sum * l + product) * decay;
+      const Digits50 value = membrane - kappa_red + g * (q1 * (1 - decay) - q2 * decay);
+      l = l - value / (membrane * delta * k + g * scatter_slope);
+    }
+    return l;
+  }
+};
+
+template <class S>
+double error_mm(const S& depth, const Digits50& exact) {
+  return static_cast<double>(abs(Digits50(Digits50(depth) - exact)));
+}
+
+/// Colours in S of a pixel at depth l, and the exact root for these colours.
+template <class S>
+struct Pixel {
+  Absorption<S> fluid;
+  Pencil<double> light;
+  S g;
+  Colour<S> colour;
+  Digits50 exact;
+
+  Pixel(const Absorption<double>& f,
+        double rho_px,
+        double l,
+        double bright = brightness,
+        bool one_height = false)
+      : fluid(cast<S>(f)) {
+    const auto camera = camera_at_corner();
+    light = pencil_of(camera, ray_at_pixel(camera, 0.0, rho_px));
+    light.height.sagittal_mm = one_height ? light.height.meridional_mm : light.height.sagittal_mm;
+    // rounding of the pencil is no error of the solver
+    light = as<double>(Pencil<double>{static_cast<double>(S(light.path_factor)),
+                                      {static_cast<double>(S(light.height.meridional_mm)),
+                                       static_cast<double>(S(light.height.sagittal_mm))}});
+    g = S(scattering);
+    const auto c = colour_at_depth(f, light, bright, scattering, l);
+    colour = {S(c.red), S(c.green)};
+    exact = ExactEquation(fluid, as<Digits50>(light), Digits50(g), colour).root(l);
+  }
+};
+
+/// Depths from 1e-6 to 14 mm, dense at both ends of the scale.
+std::vector<double> depths() {
+  std::vector<double> l;
+  for (double x = bound_mm::smallest; x < 1; x *= 30) {
+    l.push_back(x);
+  }
+  for (double x = 1; x < bound_mm::deepest; x += 3.25) {
+    l.push_back(x);
+  }
+  l.push_back(bound_mm::deepest);
+  return l;
+}
+
+/// Worst error of a solver over all deltas, radii and depths.
+template <class S, class Solve>
+double worst_error(const Solve& solve, double bright = brightness, bool one_height = false) {
+  double worst = 0;
+  for (const double delta : deltas) {
+    for (double rho = 0; rho <= static_cast<double>(pixels_to_rim); rho += 78) {
+      for (const double l : depths()) {
+        const Pixel<S> p(fluid_with(delta), rho, l, bright, one_height);
+        const DepthRoot<S> root = solve(p.fluid, as<S>(p.light), p.g, p.colour);
+        if (root.status == PixelStatus::below_range && p.exact < 2 * bound_mm::newton_float) {
+          continue;  // a float colour cannot resolve such a depth
+        }
+        const double error =
+            root.status == PixelStatus::ok ? error_mm(root.depth_mm, p.exact) : HUGE_VAL;
+        worst = (std::max)(worst, error);
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("Newton's depth is the root to roundoff", "[depth]") {
+  const auto solve = [](const auto& fluid, const auto& light, const auto& g, const auto& colour) {
+    return newton_depth(fluid, light, g, colour);
+  };
+  CHECK(worst_error<double>(solve) <= bound_mm::newton_double);
+  CHECK(worst_error<double>(solve, 0.4 * brightness) <= bound_mm::newton_double);
+  CHECK(worst_error<float>(solve) <= bound_mm::newton_float);
+  rc::prop("at random depth, radius and difference of absorption, from any start", [] {
+    const double delta = test::whole(0, 4) == 0 ? 0 : test::log_uniform(1e-12, published_delta);
+    const double l = test::log_uniform(bound_mm::smallest, bound_mm::deepest);
+    const Pixel<double> p(fluid_with(delta), test::uniform(0, 235), l);
+    const double start = test::whole(0, 3) == 0 ? not_a_number<double>() : test::uniform(-5, 30);
+    const auto root = newton_depth(p.fluid, p.light, p.g, p.colour, start);
+    RC_ASSERT(root.status == PixelStatus::ok);
+    RC_ASSERT(error_mm(root.depth_mm, p.exact) <= bound_mm::newton_double);
+  });
+}
+
+TEST_CASE("Newton's depth also has no bound of its own in 50 digits", "[depth]") {
+  const Pixel<Digits50> p(fluid_with(published_delta), 100, 6);
+  const auto root = newton_depth(p.fluid, as<Digits50>(p.light), p.g, p.colour);
+  CHECK(error_mm(root.depth_mm, p.exact) <= 1e-44);
+}
+
+namespace {
+
+/// The printed equations at a pixel with one height.
+double printed_quotient(const Pixel<double>& p, double l) {
+  const published::Fluid<double> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
+  return published::quotient(fluid, p.light.path_factor, p.light.height.meridional_mm, p.colour.red,
+                             p.colour.green, l);
+}
+
+}  // namespace
+
+TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
+  for (const int halvings : {2, 8, 16, 24}) {
+    const double half_width = std::ldexp(18.0, 1 - halvings);
+    const double error = worst_error<double>(
+        [&](const auto& fluid, const auto& light, const auto& g, const auto& colour) {
+          const published::Fluid<double> printed{fluid.c_red_per_mm, fluid.c_green_per_mm,
+                                                 fluid.kappa};
+          const double l =
+              published::bisect(printed, light.path_factor, light.height.meridional_mm, g,
+                                colour.red, colour.green, fluid.max_depth_mm, halvings);
+          return DepthRoot<double>{l, PixelStatus::ok};
+        },
+        brightness, true);
+    INFO(halvings);
+    CHECK(error <= half_width + 1e-9);  // some depths lie midway between two of its values
+    CHECK(error > 0.2 * half_width);    // a much smaller error would be suspicious
+  }
+}
+
+TEST_CASE("the published quotient has no value where the published bisection starts", "[depth]") {
+  // E006: at depth 0 it is (b - kappa r) / 0, an infinity with the wrong sign.
+  const Pixel<double> p(fluid_with(published_delta), 50, 6, brightness, true);
+  CHECK_FALSE(is_finite(printed_quotient(p, 0)));
+  CHECK_FALSE(printed_quotient(p, 0) >= p.g);  // the first step would go up, out of the fluid
+  CHECK(printed_quotient(p, 1e-3) > p.g);
+  CHECK(printed_quotient(p, static_cast<double>(p.exact)) == Approx(p.g).epsilon(1e-10));
+}
+
+namespace {
+
+/// One pixel in one row, in a block of others.
+template <class S>
+DepthRoot<S> in_a_block(
+    const detail::DepthPolynomial<S>& rows, int col, S red, S green, const S& per_g) {
+  constexpr auto n = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
+  const std::vector<S> reds(n, red), greens(n, green), all_per_g(n, per_g);
+  std::vector<S> depth(n, S(-1));
+  std::vector<PixelStatus> status(n);
+  rows.invert(0, col, reds.data(), greens.data(), all_per_g.data(), depth.data(), status.data());
+  return {depth[0], status[0]};
+}
+
+}  // namespace
+
+TEST_CASE("a depth beyond either end of the range is refused, never clamped", "[depth]") {
+  const auto fluid = fluid_with(published_delta, 10);
+  const detail::DepthPolynomial<double> rows(camera_at_corner(), fluid, 235, scattering);
+  const auto expect = [&](const Pixel<double>& p, PixelStatus status, bool by_rows = true) {
+    std::vector<DepthRoot<double>> roots{newton_depth(p.fluid, p.light, p.g, p.colour)};
+    if (by_rows) {
+      roots.push_back(in_a_block(rows, 100, p.colour.red, p.colour.green, 1 / p.g));
+    }
+    for (const auto& root : roots) {
+      CHECK(root.status == status);
+      CHECK(is_finite(root.depth_mm) == (status == PixelStatus::ok));
+    }
+  };
+  expect(Pixel<double>(fluid, 100, 10 - 1e-9), PixelStatus::ok);
+  expect(Pixel<double>(fluid, 100, 10 + 1e-9), PixelStatus::above_range);
+  expect(Pixel<double>(fluid, 100, 17), PixelStatus::above_range);
+  expect(Pixel<double>(fluid, 100, 1e-9), PixelStatus::ok);
+
+  Pixel<double> p(fluid, 100, 5);
+  const Colour<double> good = p.colour;
+  const double infinity = std::numeric_limits<double>::infinity();
+  p.colour.green = p.fluid.kappa * good.red;  // exactly at depth 0
+  expect(p, PixelStatus::ok);
+  p.colour.green *= 1 + 1e-12;
+  expect(p, PixelStatus::below_range);
+  for (const double bad : {not_a_number<double>(), infinity, -infinity}) {
+    // the rows are given no infinite colour: a window leaves such pixels out
+    p.colour = {bad, good.green};
+    expect(p, PixelStatus::not_a_number, bad != bad);
+    p.colour = {good.red, bad};
+    expect(p, PixelStatus::not_a_number, bad != bad);
+    p.colour = good;
+    p.g = bad;
+    expect(p, PixelStatus::not_a_number, false);
+    p.g = scattering;
+  }
+  expect(p, PixelStatus::ok);
+}
+
+namespace {
+
+/// One row of pixels from the axis to the rim, all at one depth.
+template <class S>
+class RowSolver {
+ public:
+  explicit RowSolver(const Absorption<double>& fluid)
+      : fluid_(fluid), rows_(camera_at_corner(), fluid, pixels_to_rim, scattering) {}
+
+  /// Worst error with all pixels at depth l.
+  double error(double l, double bright) const {
+    const auto camera = camera_at_corner();
+    const S per_g = S(1) / S(scattering);
+    const auto g = static_cast<double>(S(scattering));
+    double worst = 0;
+    for (int j = 0; j < static_cast<int>(pixels_to_rim); j += 39) {
+      const auto light = pencil_of(camera, ray_at_pixel(camera, 0.0, static_cast<double>(j)));
+      const auto c = colour_at_depth(fluid_, light, bright, g, l);
+      const Colour<S> rounded{S(c.red), S(c.green)};
+      const auto root = in_a_block(rows_, j, rounded.red, rounded.green, per_g);
+      const ExactEquation f(
+          fluid_, as<Digits50>(light), Digits50(g),
+          Colour<double>{static_cast<double>(rounded.red), static_cast<double>(rounded.green)});
+      const Digits50 exact = f.root(l);
+      if (root.status == PixelStatus::below_range && exact < 2 * bound_mm::newton_float) {
+        continue;
+      }
+      worst = (std::max)(
+          worst, root.status == PixelStatus::ok ? error_mm(root.depth_mm, exact) : HUGE_VAL);
+    }
+    return worst;
+  }
+
+  double worst(double bright) const {
+    double worst = 0;
+    for (const double l : depths()) {
+      worst = (std::max)(worst, error(l, bright));
+    }
+    return worst;
+  }
+
+ private:
+  Absorption<double> fluid_;
+  detail::DepthPolynomial<S> rows_;
+};
+
+/// Worst error over all differences of absorption, for membranes of the published brightness and
+/// darker.
+template <class S>
+double worst_of_rows(double max_depth_mm) {
+  double worst = 0;
+  for (const double delta : deltas) {
+    const RowSolver<S> solver(fluid_with(delta, max_depth_mm));
+    for (const double bright : {brightness, 0.4 * brightness}) {
+      worst = (std::max)(worst, solver.worst(bright));
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("depth by polynomials, for ranges of 14.5 and 18 mm", "[depth]") {
+  const double max_depth_mm = GENERATE(14.5, 18.0);
+  const double single = worst_of_rows<float>(max_depth_mm);
+  const double twice = worst_of_rows<double>(max_depth_mm);
+  CAPTURE(max_depth_mm, single, twice);
+  CHECK(single <= bound_mm::polynomial_float);
+  CHECK(twice <= bound_mm::polynomial_double);
+}
+
+namespace {
+
+/// Allocations of three frames.
+template <class S, class Red, class Green>
+long taken(DepthEstimator<S>& estimator, const Red& red, const Green& green) {
+  test::Estimate<S> e(rows(red), cols(red));
+  const long before = test::allocations();
+  for (int again = 0; again < 3; ++again) {
+    (void)estimator(red, green, e.depth_mm, e.status);
+    (void)estimator(red, green, e.depth_mm);
+    (void)estimator.band(5, 9, red, green, e.depth_mm, e.status);
+  }
+  return test::allocations() - before;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("no frame takes memory",
+                   "[depth]",
+                   (Kind<std::uint8_t, float>),
+                   (Kind<std::uint16_t, float>),
+                   (Kind<float, float>),
+                   (Kind<std::uint8_t, double>),
+                   (Kind<double, double>)) {
+  using S = typename TestType::Scalar;
+  using Pixel = typename TestType::Pixel;
+  const Pad pad;
+  auto frame = pad.frame<Pixel>(pad.pressed_depths(3));
+  for (std::size_t k = 0; k < frame.red.cells.size(); k += 5) {
+    frame.red.cells[k] = test::stored<Pixel>(k % 2 == 0 ? 0 : 255);
+  }
+  for (const int window_px : {1, 29}) {
+    const auto first = pad.estimator<S>({.window_px = window_px});
+    const long before = test::allocations();
+    DepthEstimator<S> estimator = first;
+    CHECK(test::allocations() > before);  // the counter works
+    CHECK(taken(estimator, frame.red, frame.green) == 0);
+    if constexpr (std::is_same_v<Pixel, std::uint8_t>) {
+      cv::Mat image(static_cast<int>(pad.rows), static_cast<int>(pad.cols), CV_8UC3);
+      image = cv::Scalar(10, 50, 60);
+      CHECK(taken(estimator, channel<const Pixel>(image, 2), channel<const Pixel>(image, 1)) == 0);
+    }
+  }
+}
+
+TEST_CASE("no frame takes memory as printed", "[depth]") {
+  const Pad pad;
+  const auto free = pad.free_depths();
+  const auto frame = pad.frame<std::uint8_t>(free);
+  published::DepthEstimator<double> estimator(pad.published(), frame.red, frame.green, free);
+  test::Image<double> depth(pad.rows, pad.cols);
+  const long before = test::allocations();
+  for (int again = 0; again < 3; ++again) {
+    (void)estimator(frame.red, frame.green, depth);
+  }
+  CHECK(test::allocations() == before);
 }

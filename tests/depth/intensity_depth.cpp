@@ -11,6 +11,7 @@
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -275,4 +276,16 @@ TEST_CASE("intensity depth: what does not fit is refused", "[intensity_depth]") 
   CHECK(begins_with(options({.saturated = 5}), "IntensityOptions: saturated = 5"));
   CHECK(begins_with(options({.saturated = none}), "IntensityOptions: saturated = nan"));
   CHECK(options({.saturated = std::numeric_limits<double>::infinity()}) == "accepted");
+}
+
+TEST_CASE("intensity depth: a frame allocates nothing", "[intensity_depth]") {
+  const test::Image<std::uint8_t> free(40, 50, 140);
+  const test::Image<std::uint8_t> now(40, 50, 120);
+  test::Image<float> depth(40, 50);
+  IntensityDepth<> pressed(free, {});
+  const long before = test::allocations();
+  const auto result = pressed(now, depth);
+  const long after = test::allocations();
+  CHECK(result == FrameStatus::not_of_this_pad);
+  CHECK(after == before);
 }

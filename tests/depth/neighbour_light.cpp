@@ -13,6 +13,7 @@
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
@@ -454,4 +455,20 @@ TEST_CASE("quick functions of a vector are those of each number") {
     CHECK(power[j] == detail::quick_exp(x[j]));
     CHECK(angle[j] == detail::inclination(x[j] * x[j]));
   }
+}
+
+TEST_CASE("neighbour light: a frame allocates nothing") {
+  using namespace fingerpad;
+  std::vector<float> reference(48 * 64, 1.0F), depth(48 * 64, 2.0F);
+  depth[1000] = std::nanf("");
+  const StridedView<float> reference_view(reference.data(), 48, 64, 64);
+  const StridedView<float> view(depth.data(), 48, 64, 64);
+  NeighbourLightCompensation<> compensation({}, 0.1F, reference_view);
+  const long before = test::allocations();
+  for (int frame = 0; frame < 3; ++frame) {
+    (void)compensation(view, view);
+  }
+  const long after = test::allocations();
+  CHECK(before > 0);
+  CHECK(after == before);
 }

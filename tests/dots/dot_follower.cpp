@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/image.hpp"
 #include "support/refusal.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/image.hpp"
 #include "support/refusal.hpp"

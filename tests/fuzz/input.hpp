@@ -19,7 +19,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 
 namespace fuzz {
 

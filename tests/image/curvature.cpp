@@ -14,7 +14,7 @@
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/published/contact_region.hpp"
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/cameras.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"

@@ -124,8 +124,21 @@ TEST_CASE("angles and rotations against fifty digits", "[math]") {
     RC_ASSERT(difference(rotation_of(angles), written) < 4 * eps);
     RC_ASSERT(difference(rotation_of(exact), written) < 1e-48);
     const auto back = zyx_angles(written);
+    RC_ASSERT(abs(Digits50(back.x_rad - exact.x_rad)) < Digits50("1e-45"));
+    RC_ASSERT(abs(Digits50(back.y_rad - exact.y_rad)) < Digits50("1e-45"));
     RC_ASSERT(static_cast<double>(abs(Digits50(back.z_rad - exact.z_rad))) < 1e-46);
   });
+}
+
+TEST_CASE("in gimbal lock only x -+ z is defined, and z is 0", "[math]") {
+  for (const double sign : {1.0, -1.0}) {
+    // cos(pi/2) in double is 6e-17: in practice a gimbal lock
+    const auto turn = rotation_of(Angles<double>{0.7, sign * pi / 2, 0.2});
+    const auto a = zyx_angles(turn);
+    CHECK(a.z_rad == 0);
+    CHECK(a.y_rad == Approx(sign * pi / 2));
+    CHECK(a.x_rad == Approx(0.7 - sign * 0.2));
+  }
 }
 
 TEST_CASE("the angle between rotations", "[math]") {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/report/chain/pressed_frames.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/numbers.hpp"
 #include "support/refusal.hpp"
@@ -707,4 +708,20 @@ TEST_CASE("a fingertip that has forgotten begins anew", "[chain]") {
   const auto again = touch_of(tip, frames()[0].view());
   CHECK(test::same_bits(first.motion.angles.z_rad, again.motion.angles.z_rad));
   CHECK(first.stick.status == again.stick.status);
+}
+
+TEST_CASE("the whole chain: a frame allocates nothing", "[chain]") {
+  const PressedFrames frames(240, 320, 2);
+  FingertipOptions options = frames.options();
+  options.wrench.emplace();
+  Fingertip fingertip(options);
+  const Inputs first = frames[0].view(), second = frames[1].view();
+  const long before = test::allocations();
+  const auto a = touch_of(fingertip, first);
+  const auto b = touch_of(fingertip, second);
+  (void)fingertip.depth_mm()(120, 160);
+  (void)fingertip.contact_mask()(120, 160);
+  CHECK(test::allocations() == before);
+  CHECK(a.contact.ok());
+  CHECK(b.contact.ok());
 }

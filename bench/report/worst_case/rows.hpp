@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 
 #if __has_include(<valgrind/callgrind.h>)
 #include <valgrind/callgrind.h>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Loads from dots of finite-element membranes against the truth.
-// test_accuracy "[traction]" -s prints all figures.
+// test_figures "[traction]" -s prints all figures.
 #include "fingerpad/force/traction.hpp"
 
 #include <cmath>

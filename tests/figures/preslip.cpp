@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Whole chains from readings to alarms on signals of known truth: how often and how late slip is
-// detected, and how often falsely. test_accuracy "[preslip]" -s prints all figures.
+// detected, and how often falsely. test_figures "[preslip]" -s prints all figures.
 #include "fingerpad/foam/preslip.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratio in space, without and with the friction limit, on finite-element membranes.
-// test_accuracy "[spatial_stick]" -s prints all figures, "[spatial_noise]" those of the page.
+// test_figures "[spatial_stick]" -s prints all figures, "[spatial_noise]" those of the page.
 #include <algorithm>
 #include <array>
 #include <cmath>

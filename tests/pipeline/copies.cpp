@@ -9,7 +9,7 @@
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 
 using namespace fingerpad;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Motion of the object on finite-element membranes, from the sticking dots. test_accuracy
+// Motion of the object on finite-element membranes, from the sticking dots. test_figures
 // "[object_motion]" -s prints all figures, "[pose_noise]" those of other noise.
 #include "fingerpad/motion/object_motion.hpp"
 

@@ -11,6 +11,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/gel_frames.hpp"
 #include "support/generators.hpp"
@@ -209,10 +210,6 @@ std::vector<Step> dragged(const AnyGel& gel, double far_mm) {
   return steps;
 }
 
-}  // namespace
-
-namespace {
-
 /// A gel and a ball whose dent covers at least half of the frame and at most a quarter of its
 /// border.
 struct LargeContact {
@@ -378,4 +375,33 @@ TEST_CASE("gel slide: a gel that springs back is told, one that is pulled is not
     }
     RC_ASSERT(seen.slide.back().recoil > 0.8 * seen.displaced[pulled - 1]);
   });
+}
+
+TEST_CASE("gel contact: its images stay; gel slide: a frame allocates nothing",
+          "[gel_contact][gel_slide]") {
+  const test::GelCamera camera;
+  test::Random random(5);
+  test::BallOnGel<> contact(test::GelPad{});
+  GelContact gel(std::vector{test::mat_of(camera.frame(contact, random))});
+  const auto images = [&] {
+    return std::array<const void*, 3>{gel.mask().data, gel.difference().data, gel.imprint().data};
+  };
+  const auto first = images();
+  const auto home = camera.dots(contact, random);
+  GelSlide slide(gel.mask().rows, gel.mask().cols, home);
+  for (int frame = 0; frame < 5; ++frame) {
+    contact.drag(0.5 + 0.1 * frame, {0.5 * frame, 0.1 * frame});
+    const GelResult found = gel(test::mat_of(camera.frame(contact, random)));
+    const cv::Mat_<float>& imprint = gel.imprint();
+    CHECK(images() == first);
+    const auto dots = camera.dots(contact, random);
+    const long before = test::allocations();
+    const auto slid = slide(imprint, gel.mask(), dots);
+    const long after = test::allocations();
+    CHECK(before > 0);
+    CHECK(found.in_contact());
+    CHECK(slid.ok());
+    CHECK(is_finite(slid.recoil));
+    CHECK(after == before);
+  }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Stick ratios against the truth, on synthetic dots with and without each effect and on dots of
-// finite-element membranes. test_accuracy "[stick_ratio]" -s prints all figures.
+// finite-element membranes. test_figures "[stick_ratio]" -s prints all figures.
 #include "fingerpad/slip/stick_ratio.hpp"
 
 #include <array>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // How long before an object slides as a whole, in steps of finite-element scenes, a stick ratio
 // below 0.5 and the published friction ratio warn, and how often they warn for nothing.
-// test_accuracy "[slip_warning]" -s prints all figures.
+// test_figures "[slip_warning]" -s prints all figures.
 #include <cmath>
 #include <cstdint>
 #include <iomanip>

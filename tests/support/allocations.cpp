@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "no_allocation/count.hpp"
+#include "support/allocations.hpp"
 
 #include <atomic>
 #include <cstddef>

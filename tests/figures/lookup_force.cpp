@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Forces by look-up on finite-element membranes: calibrated on some scenes, tested on others.
-// test_accuracy "[force]" -s prints all figures.
+// test_figures "[force]" -s prints all figures.
 #include <algorithm>
 #include <array>
 #include <cmath>
