@@ -28,8 +28,8 @@ int main() {
   for (int frame = 0; frame <= 12; ++frame) {
     const auto seen = stick(dot_grid, contact_grid);  // every frame
     if (seen.updated()) {
-      std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame,
-                  seen.stick_ratio, seen.stick, seen.dots_in_contact(),
+      std::printf("frame %2d: stick ratio %.2f (%td of %td dots), %s\n", frame, seen.stick_ratio,
+                  seen.stick, seen.dots_in_contact(),
                   seen.stick_ratio < 0.5 ? "grip harder" : "ok");
       last = seen.stick_ratio;
     } else {

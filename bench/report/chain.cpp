@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // The whole chain from a frame to all results (pipeline/fingertip.hpp), as JSON: error of each
 // result, time of each stage, time against error by the step of the samples, instructions and
-// cycles where the machine counts them, what a copy costs, the distribution of latencies over
-// 10,000 frames, and growth with the size of the image and the number of dots.
+// cycles where the machine counts them, what a copy costs, and latencies over
+// 10,000 frames.
 // Frames and truth: bench/report/chain/pressed_frames.hpp. "chain FRAMES" only times that many
 // frames.
 #include <algorithm>
@@ -219,30 +219,6 @@ ordered_json latencies_of(Fingertip chain, const chain::PressedFrames& frames, i
   out["worst_ms"] = sorted.back();
   out["worst_of_thread_ms"] = worst_of_thread_ms;
   out["frames_per_s"] = 1000 * count / sum_ms;
-  for (int k = 0; k <= 1000; ++k) {
-    out["sorted_ms"].push_back(share_of(sorted, k / 1000.0));
-  }
-  return out;
-}
-
-/// Medians of the lean chain's stages over image sizes and dots.
-ordered_json growth() {
-  ordered_json out = ordered_json::array();
-  const auto add = [&](const char* by, Index size, const FingertipOptions& options,
-                       const chain::PressedFrames& frames, int count) {
-    auto stages = stages_of(chain::lean(options), frames, count);
-    stages["by"] = by;
-    stages["size"] = size;
-    out.push_back(stages);
-  };
-  for (const Index rows : {120, 240, 480, 960, 1440, 1944}) {
-    const chain::PressedFrames frames(rows, rows * 4 / 3, 2);
-    add("pixels", frames.pixels(), frames.options(), frames, rows > 480 ? 30 : 200);
-  }
-  for (const Index dots : {11, 21, 41, 81}) {
-    const chain::PressedFrames frames(480, 640, 16, dots);
-    add("dots", dots * dots, frames.options(), frames, 200);
-  }
   return out;
 }
 
@@ -336,7 +312,6 @@ int main(int argc, char** argv) {
     out["samples"].push_back(samples_of("default", chain::in_samples(options, step), frames));
   }
   out["passes_ms"] = {{"lean", passes_of(lean, frames)}, {"default", passes_of(options, frames)}};
-  out["growth"] = growth();
   out["latency"] = latencies_of(Fingertip(lean), frames, count);
   std::cout << out.dump(1) << '\n';
 }

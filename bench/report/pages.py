@@ -3,10 +3,10 @@
 # SPDX-License-Identifier: MIT
 """Writes the report: pages.py BUILD DOCS COMPILER, from the results in BUILD.
 
-docs/speed_and_error.md and docs/whole_chain.md with their pictures, and the tables within
-docs/hard_cases.md, docs/papers.md and docs/what_a_scene_needs.md.
+Their tables stand between <!-- table: NAME --> and <!-- end --> in docs/results.md,
+docs/speed_and_error.md, docs/papers.md and docs/hard_cases.md; all else on these pages is written by
+hand. The pictures are beside them.
 """
-import csv
 import io
 import json
 import pathlib
@@ -108,31 +108,8 @@ def write_methods(build, docs, about):
     overview = [(label, runs[program][group][published], runs[program][group][ours])
                 for label, program, group, published, ours in COMPARED]
     plots.summary(overview, pictures / "summary.png")
-    (docs / "speed_and_error.md").write_text(f"""# Speed against error
-
-Every method, every choice and every scalar: what a frame costs and how far it is from the truth, on
-the same inputs. Written by `bench/report/run`, which builds and runs all of `bench/`.
-
-{about}
-
-![fingerpad's default against the published way](speed_and_error/summary.png)
-
-How to read it. Times are medians over repetitions, with half the distance of the 10th and the 90th
-percentile; "ns per item" is the native time over the number of pixels, samples or frames of a call,
-and "times as fast" compares with the first row, both at the native flags. Errors are the
-**median / 99th percentile / worst** of everything that was compared, and of how many if not all have
-an answer. Errors "on scenes" are against finite-element membranes. Their rubber is neo-Hookean or
-Mooney-Rivlin, as the pull at the rim supposes too; they share no other law with a method. All other
-errors are against truths made by the law of the method: light by the model that is inverted, caps,
-rigid motions, films. Where a method has the one kind, pictures and first tables show that. Memory is
-what a row's estimator, workspace, state and outputs take; allocations are those of one call. "over"
-columns give the native time over that of a yardstick in the same run: OpenCV's nearest primitive, or
-one streaming pass over four planes of 640 x 480 floats. In the pictures a star is the published way,
-the dotted line joins the ways that nothing beats in both time and error, and dashed lines are
-yardsticks. What is timed and what the truth is stands on top of each `bench/*/*.cpp`.
-The [whole chain](whole_chain.md), [hard cases](hard_cases.md) and [what a scene
-needs](what_a_scene_needs.md) have pages of their own.
-{body.getvalue()}""", encoding="utf-8")
+    replace_table(docs / "speed_and_error.md", "machine", about)
+    replace_table(docs / "speed_and_error.md", "methods", body.getvalue())
 
 
 def table(head, rows):
@@ -185,107 +162,20 @@ def chain_samples(runs):
                  map(row, zip(*(run["samples"] for run in runs.values()))))
 
 
-def chain_events(runs):
-    def told(of):
-        return of and all(of.values())
-    rows = [[f"{name}, {flags}", *(f"{of['events'][e] / 1e6:.3g}" for e in ("instructions", "cycles"))]
-            for flags, run in runs.items() for name, of in run["chains"].items()
-            if told(of["events"])]
-    if not rows:
-        return "This machine does not tell how many instructions and cycles a frame takes.\n"
-    return table(["a frame", "million instructions", "million cycles"], rows)
-
-
-def chain_passes(runs):
-    columns = {f"{chain}, {flags}": of for flags, run in runs.items()
-               for chain, of in run["passes_ms"].items()}
-    passes = next(iter(columns.values()))
-    return table(["us, medians", *columns],
-                 [[name, *(number(1000 * of[name], 3) for of in columns.values())]
-                  for name in passes])
-
-
 def write_chain(build, docs, about):
-    pictures = docs / "whole_chain"
+    pictures = docs / "results"
     pictures.mkdir(exist_ok=True)
     runs = {name: json.loads((build / f"chain_{f}.json").read_text(encoding="utf-8"))
             for f, name in FLAGS.items()}
     runs = {"-O2": runs[FLAGS["o2"]], "native": runs[FLAGS["native"]]}
-    plots.chain_stages(runs, pictures / "stages.png")
-    plots.chain_samples([(o["policies"], o["step"], o["whole_ms"],
-                          o["errors"]["depth of a pixel"]["99 %"])
-                         for o in runs["native"]["samples"]], pictures / "samples.png")
-    plots.chain_latencies(runs, pictures / "latency.png")
-    plots.chain_growth(runs["native"], pictures / "growth.png")
     chains = runs["native"]["chains"]
-    count = runs["native"]["latency"]["frames"]
-    (docs / "whole_chain.md").write_text(f"""# The whole chain
-
-A frame in, all results out: 640 x 480 pixels of red and green, two planes of 8 bit, to smoothing,
-depth, contact region, motion of the object, stick ratio, look-up forces and six-axis force, put
-together in
-[pipeline/fingertip.hpp](../include/fingerpad/pipeline/fingertip.hpp); the dots are given. Written by
-`bench/report/run`.
-
-{about}
-
-Two chains. **default**: the methods by default. **lean**: what a flat contact on a pad with dark dots
-cannot do without: no placed edge, in samples of 4 x 4 pixels where the other has 3 x 3.
-
-![Time of each stage](whole_chain/stages.png)
-
-What each stage adds to the time of a frame:
-
-{chain_stages(runs, chains)}
-{chain_events(runs)}
-## Samples
-
-What is averaged over 29 px need not be worked on at every pixel
-([samples](depth/depth.md#samples)). Time against error by step, 16 frames, median / 99 %:
-
-![Time over the error of depth, by step and policies](whole_chain/samples.png)
-
-{chain_samples(runs)}
-The frame is read once, for the samples, and the samples a second time, for the depth. One pass over both
-could save no more than a copy of the samples takes, because they stay in the cache:
-
-{chain_passes(runs)}
-## Vectors
-
-The pixel kernels use the widest vectors that the compiler's flags allow. Instructions a call takes at `-O2`, on
-a frame of 320 x 240 pixels and its depths: valgrind counts those of x86-64, and qemu executes those of aarch64.
-Without vectors, `FINGERPAD_NO_VECTORS` is defined. Repeat: `bench/report/run instructions`. Results in all of
-them agree ([modes](hardening.md#modes)).
-
-{(build / "instructions.md").read_text(encoding="utf-8")}
-Samples of 3 x 3 use 16-byte vectors everywhere, since each call works on three of them.
-
-## Error
-
-16 frames of a membrane in equilibrium under a plate that drags its dots to and fro and turns them,
-one grey level of noise; every result has its truth (bench/report/chain/pressed_frames.hpp).
-
-{chain_errors(chains)}
-The contact's area is that of a region whose gap of 20 um counts as touched, and of depths that were
-averaged over 29 px; [contact region](contact/contact_region.md) says what each does to it. Look-up forces
-follow the area.
-
-## Latency
-
-{count} frames of the lean chain, one after another, in one thread. Results are the same to the last bit from
-run to run (`tests/pipeline/fingertip.cpp`). A frame that takes several times the median was interrupted: the core
-went to another process, or a virtual machine's host took it. The processor time is that of the thread; the host's
-share remains in it.
-
-![Share of frames that take longer](whole_chain/latency.png)
-
-{chain_latencies(runs)}
-## Growth
-
-Windows and rings are as wide on the pad, whatever the size of the image.
-
-![Time over the size of the image, the number of dots, and the length of the history](whole_chain/growth.png)
-""", encoding="utf-8")
+    plots.chain_stages(runs, pictures / "stages.png")
+    for name, text in (("machine", about), ("chain_stages", chain_stages(runs, chains)),
+                       ("chain_latencies", chain_latencies(runs)),
+                       ("chain_errors", chain_errors(chains)), ("chain_samples", chain_samples(runs))):
+        replace_table(docs / "results.md", name, text)
+    for name in ("worst_case", "instructions"):
+        replace_table(docs / "results.md", name, (build / f"{name}.md").read_text("utf-8"))
 
 
 def replace_table(page, name, table):
@@ -301,12 +191,7 @@ def main():
     write_methods(build, docs, about)
     write_chain(build, docs, about)
     replace_table(docs / "hard_cases.md", "hard_cases", (build / "hard_cases.md").read_text("utf-8"))
-    replace_table(docs / "hard_cases.md", "worst_case", (build / "worst_case.md").read_text("utf-8"))
     replace_table(docs / "papers.md", "papers", (build / "papers.md").read_text("utf-8"))
-    replace_table(docs / "what_a_scene_needs.md", "ablation",
-                  (build / "ablation.md").read_text("utf-8"))
-    with open(build / "ablation.csv", encoding="utf-8") as file:
-        plots.ablation(list(csv.DictReader(file)), docs / "what_a_scene_needs.png")
 
 
 if __name__ == "__main__":

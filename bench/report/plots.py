@@ -8,6 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import LogFormatterSciNotation  # noqa: E402
+from PIL import Image  # noqa: E402
 
 from runs import is_on_scenes, main_quantity  # noqa: E402
 
@@ -20,6 +21,8 @@ def save(figure, path):
     figure.tight_layout()
     figure.savefig(path)
     plt.close(figure)
+    with Image.open(path) as drawn:  # lines and letters need few colours
+        drawn.convert("RGB").quantize(48, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def logarithmic(axis, name):
@@ -147,81 +150,4 @@ def chain_stages(runs, path):
     axes.set_xlabel("ms a frame of 640 x 480, one thread (medians)")
     axes.legend(ncol=4, fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.45, 1))
     axes.margins(x=0.1)
-    save(figure, path)
-
-
-def chain_samples(points, path):
-    """Time over the depth's error; `points` (policies, step, ms, mm), one line per `policies`."""
-    figure, axes = plt.subplots(figsize=(7, 3.6))
-    for policies, colour in (("default", OURS), ("lean", PUBLISHED)):
-        of = [p for p in points if p[0] == policies]
-        axes.plot([p[3] for p in of], [p[2] for p in of], marker="o", color=colour, label=policies)
-        for _, step, ms, mm in of:
-            is_last = step == of[-1][1]  # the label of the previous point is on the right
-            axes.annotate(f"{step} px", (mm, ms), xytext=(-6 if is_last else 6, -12 if step % 2 else 6),
-                          ha="right" if is_last else "left", textcoords="offset points", fontsize=8,
-                          color=colour)
-    axes.margins(x=0.1)
-    axes.set_ylim(bottom=0)
-    axes.set_xlabel("error of the depth of a pixel, 99th percentile, mm")
-    axes.set_ylabel("ms a frame, native")
-    axes.legend(frameon=False)
-    save(figure, path)
-
-
-def chain_latencies(runs, path):
-    """Share of the frames that take longer than a given time, in ms."""
-    figure, axes = plt.subplots(figsize=(9, 3.4))
-    for flags, run in runs.items():
-        ms = run["latency"]["sorted_ms"]
-        axes.plot(ms, [1 - k / len(ms) for k in range(len(ms))], label=flags)
-    logarithmic(axes.xaxis, "x")
-    axes.set_yscale("log")
-    axes.set_xlabel("latency of a frame, ms")
-    axes.set_ylabel("share of the frames that take longer")
-    axes.legend(frameon=False)
-    save(figure, path)
-
-
-def chain_growth(run, path):
-    """Times of the stages over the numbers of pixels and dots."""
-    kinds = list(dict.fromkeys(g["by"] for g in run["growth"]))
-    figure, all_axes = plt.subplots(1, len(kinds), figsize=(11, 3.6), sharey=True)
-    for axes, kind in zip(all_axes, kinds):
-        points = [g for g in run["growth"] if g["by"] == kind]
-        for stage in points[0]["stages_ms"]:
-            axes.plot([p["size"] for p in points], [p["stages_ms"][stage] for p in points],
-                      marker="o", ms=3, label=stage)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlabel(kind)
-    all_axes[0].set_ylabel("ms a frame, native")
-    all_axes[-1].legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1, 0.5))
-    save(figure, path)
-
-
-def ablation(cells, path):
-    """Heat map of the error without the effect over that with it; `cells` of the program's CSV."""
-    cells = [c for c in cells if c["with_median"] and c["without_median"]]
-    name = lambda c: f"{c['effect']}: {c['quantity']}"
-    effects = list(dict.fromkeys(map(name, cells)))
-    scenes = list(dict.fromkeys(c["scene"] for c in cells))
-    ratio = [[math.nan] * len(scenes) for _ in effects]
-    figure, axes = plt.subplots(figsize=(11, 0.34 * len(effects) + 1.6))
-    for c in cells:
-        # below 1e-6 there is only rounding
-        with_it, without = (x if x > 1e-6 else 0.0 for x in (float(c["with_median"]),
-                                                             float(c["without_median"])))
-        times = without / with_it if with_it > 0 else math.inf if without > 0 else 1
-        i, j = effects.index(name(c)), scenes.index(c["scene"])
-        ratio[i][j] = max(-2, min(2, math.log10(times))) if times > 0 else -2
-        text = "all" if times == math.inf else f"{times:.2g}" if times < 100 else f"{times:.0f}"
-        axes.text(j, i, text, ha="center", va="center", fontsize=8,
-                  color="white" if abs(ratio[i][j]) > 0.8 else "black")
-    axes.imshow(ratio, cmap="RdBu", vmin=-1.3, vmax=1.3, aspect="auto")
-    axes.set_xticks(range(len(scenes)), scenes, rotation=25, ha="right")
-    axes.set_yticks(range(len(effects)), effects)
-    axes.grid(False)
-    axes.set_title("Median error without an effect / with it (blue: switch it on; red: it harms; "
-                   "all: none is left with it)", loc="left", fontsize=10)
     save(figure, path)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Real-time behaviour, one row per method: the time and the instructions of a call on the usual and
 // on the hardest input, the slowest of many calls, page faults and allocations. This is no
-// google-benchmark program: it prints the Markdown table of docs/hard_cases.md. "worst_case count"
+// google-benchmark program: it prints the Markdown table of docs/results.md. "worst_case count"
 // under callgrind leaves a dump for each input. "worst_case CALLS INSTRUCTIONS" makes that many
 // calls of each row, for at most a minute, and reads what the dumps say, a line each.
 #include <algorithm>

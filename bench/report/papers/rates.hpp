@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Frames per second of each method on one thread, the best of several runs. The printed rates are
-// those of whole programs on a PC of 2010; docs/whole_chain.md times the chain.
+// those of whole programs on a PC of 2010; docs/results.md times the chain.
 #include <chrono>
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Runs the control loop of a gripper on a recording in real time: each frame arrives at its
 // recorded time, and the grip force is computed before the next. A rod is pressed in, then dragged
-// until it slides. Usage: 15_gripper_loop [RECORDING]
+// until it slides. Usage: gripper_loop [RECORDING]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Controls the grip force on a cup that is filled while a fingertip holds it by friction. Its
 // weight and the friction are unknown. With the grip force from the stick ratio of the dots the cup
-// is held; with a constant force it drops. Usage: 08_closed_loop_grip [CHART.png], which also draws
+// is held; with a constant force it drops. Usage: closed_loop_grip [CHART.png], which also draws
 // both runs.
 #include <algorithm>
 #include <cstddef>

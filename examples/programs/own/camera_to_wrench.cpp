@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Computes six-axis force and moment from camera frames, and compares them with the true forces of
 // the recording.
-// Usage: 14_camera_to_wrench [RECORDING], a folder with sensor.json as `calibrate` writes it.
+// Usage: camera_to_wrench [RECORDING], a folder with sensor.json as `calibrate` writes it.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
