@@ -195,6 +195,16 @@ TEST_CASE("published object motion: the contact reference dot") {
   }
   SECTION("only in contact, and with all neighbours found") {
     dots(3, 3).z -= 1;
+    for (Index i = 0; i < 7; ++i) {  // further ones may be missing
+      for (Index j = 0; j < 7; ++j) {
+        const bool neighbour = std::abs(i - 3) < 2 && std::abs(j - 3) < 2;
+        auto few = dots;
+        few(i, j).x = neighbour ? few(i, j).x : std::nan("");
+        published::ObjectMotion fresh(free);
+        CAPTURE(i, j);
+        CHECK(fresh(few, contact).reference == DotIndex{3, 3});
+      }
+    }
     CHECK(motion(dots, contact).reference == DotIndex{3, 3});
     contact(3, 3) = 0;
     CHECK(motion(dots, contact).reference == DotIndex{1, 1});

@@ -116,6 +116,36 @@ TEST_CASE("published neighbouring light: r, m_0 and n of presses are found again
           .ok());
 }
 
+TEST_CASE("published neighbouring light: inclination and sums up to the border", "[published]") {
+  const Image<double> level(7, 9, 5.0);
+  Image<double> plane(7, 9);
+  std::vector<double> change;
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 9; ++j) {
+      plane(i, j) = 5 + 0.3 * static_cast<double>(j) - 0.2 * static_cast<double>(i);
+      change.push_back(std::ldexp(1.0, static_cast<int>(i + 2 * j)));
+    }
+  }
+  const auto by_pixel = published::inclination_change(plane, level, 0.5);
+  for (Index i = 0; i < 7; ++i) {
+    for (Index j = 0; j < 9; ++j) {
+      const bool inner = i > 0 && j > 0 && i < 6 && j < 8;
+      const double here = published::inclination(plane, 0.5, i, j);
+      CAPTURE(i, j);
+      CHECK((inner ? here == Approx(std::atan(std::hypot(0.3, 0.2) / 0.5)) : std::isnan(here)));
+      CHECK(by_pixel[static_cast<std::size_t>(9 * i + j)] == (inner ? here : 0));
+      double sum = 0;
+      for (Index k = 0; k < 7; ++k) {
+        for (Index l = 0; l < 9; ++l) {
+          const bool near = (k - i) * (k - i) + (l - j) * (l - j) <= 9;
+          sum += near ? change[static_cast<std::size_t>(9 * k + l)] : 0;
+        }
+      }
+      CHECK(published::disc_sum(change, 9, 3, i, j) == sum);
+    }
+  }
+}
+
 TEST_CASE("published circle through three points", "[published]") {
   // a sphere of 20 mm in any direction: nearest pixels use their own distance
   Image<double> sphere(41, 41), level(41, 41, 9.0);
