@@ -10,14 +10,18 @@
 //   papers/slippage.hpp               dots of these membranes
 //   papers/preslip.hpp                simulated foam fingers
 //   papers/rates.hpp                  time
+//   papers/forms.hpp                  printed forms that no other table has
+//   papers/other_rubber.hpp           dots of these membranes, of another rubber
 // With the first word of a section's title (Shape, Position, Six-axis, ...) it prints only that
 // section.
 #include <iostream>
 #include <string>
 
 #include "papers/fluid.hpp"
+#include "papers/forms.hpp"
 #include "papers/location.hpp"
 #include "papers/look_up.hpp"
+#include "papers/other_rubber.hpp"
 #include "papers/preslip.hpp"
 #include "papers/rates.hpp"
 #include "papers/rim.hpp"
@@ -42,9 +46,15 @@ int main(int argc, char** argv) {
   if (wanted("rim")) {
     print_rim(std::cout);
   }
+  if (wanted("rubber")) {
+    print_other_rubber(std::cout);
+  }
   section("Forces", look_up_section);
   section("Slippage", slippage_section);
   section("Pre-slip", preslip_section);
+  if (wanted("forms")) {
+    print_forms(std::cout);
+  }
   section("Rates", rates_section);
   return 0;
 }

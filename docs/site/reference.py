@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
 """Writes the site's first page, a page for each public class (a row of docs/classes.md), for each printed
-form (a name in docs/errata.md) and for each public header: reference.py ROOT SOURCE XML"""
+form (a name in docs/papers.md) and for each public header: reference.py ROOT SOURCE XML"""
 import functools
 import re
 import sys
@@ -74,11 +74,11 @@ def class_page(name, row, root):
 
 
 def printed_forms(root):
-    """Of each name of the column "As printed" in docs/errata.md: its rows' cells."""
+    """Of each name of the column "As printed" in docs/papers.md: its rows' cells."""
     forms = {}
-    for line in (root / "docs/errata.md").read_text().splitlines():
+    for line in (root / "docs/papers.md").read_text().splitlines():
         cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-        if len(cells) == 5 and cells[0].isdigit():
+        if len(cells) == 6 and re.fullmatch(r"[A-Z]\d", cells[0]):
             for name in re.findall(r"`(?:published::)?(\w+)[\w:]*`", cells[2]):
                 forms.setdefault(name, []).append(cells)
     return forms
@@ -124,7 +124,7 @@ def printed_page(name, rows, root):
                 "part of a default frame.",
         "Error": f"What is wrong with it: [errata](../../docs/errata.md){', ' + errors if errors else ''}. What it does to the "
                  "papers' figures: [papers](../../docs/papers.md).",
-        "Example": f"A test holds it to what is printed:\n\n```cpp\n{test_named(rows[0][4], root)}```",
+        "Example": f"A test holds it to what is printed:\n\n```cpp\n{test_named(rows[0][5], root)}```",
     }
     return f"# {name}, as printed\n" + "".join(f"\n## {h}\n\n{under[h]}\n" for h in HEADINGS)
 

@@ -10,7 +10,7 @@ classes.py ROOT --planted  plants one gap of each kind in a copy and expects it 
 2. A row has no empty cell, and its class and the types that it names exist.
 3. Each field of a parameter and each value of a status has a comment.
 4. The class's page, as the site writes it, has text under each heading.
-5. The same holds for each printed form in docs/errata.md, which includes each class of published/.
+5. The same holds for each printed form in docs/papers.md, which includes each class of published/.
 """
 import importlib.util
 import re
@@ -87,12 +87,12 @@ def gaps(root):
     for header in sorted((root / "include/fingerpad/published").glob("*.hpp")):
         for name in CLASS.findall(header.read_text()):
             if name not in forms:
-                yield f"no printed form in docs/errata.md: {name} of {header.relative_to(root)}"
+                yield f"no printed form in docs/papers.md: {name} of {header.relative_to(root)}"
     for name, rows in forms.items():
         if site.declaration_of(name, root):
             yield from empty_headings(site.printed_page(name, rows, root), f"published::{name}", site)
         else:
-            yield f"docs/errata.md: no such printed form: {name}"
+            yield f"docs/papers.md: no such printed form: {name}"
 
 
 def empty_headings(page, name, site):
@@ -114,8 +114,8 @@ PLANTED = {
         "\n| `Planted` | it | [a](depth/depth.md) | `Camera` | `DepthResult` | [a](a.md) | [a](a.md) | [a](a.md) |\n"),
     "a row with an empty cell": ("docs/classes.md",
         "\n| `Wrench` |  | [a](depth/depth.md) | `Camera` | `DepthResult` | [a](a.md) | [a](a.md) | [a](a.md) |\n"),
-    "a printed form that is not there": ("docs/errata.md",
-        '\n| 99 | it | `published::Planted` | that | [a](../tests/published/segment_equilibrium.cpp) "a" |\n'),
+    "a printed form that is not there": ("docs/papers.md",
+        '\n| Z9 | it | `published::Planted` | that | row | [a](../tests/published/segment_equilibrium.cpp) "a" |\n'),
     "a printed class without a row": ("include/fingerpad/published/segment_equilibrium.hpp", "\nclass Planted {\n};\n"),
     "a field without a comment": ("docs/classes.md", None),
 }
@@ -130,7 +130,7 @@ def planted_are_found(root):
             (copy / "tests").symlink_to(root / "tests")
             for name in ("include", "docs/site"):
                 shutil.copytree(root / name, copy / name)
-            for name in ("classes.md", "errata.md"):
+            for name in ("classes.md", "papers.md"):
                 shutil.copy(root / "docs" / name, copy / "docs")
             if text is None:
                 header = copy / "include/fingerpad/slip/grip_control.hpp"

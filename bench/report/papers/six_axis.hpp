@@ -101,6 +101,7 @@ inline Section six_axis_section() {
                        const std::function<std::string(const Loads&)>& cell) {
     const auto told = [&](const Loads& loads) {
       return (loads.normal.empty() ? "" : cell(loads)) +
+             (loads.normal.empty() && loads.no_answer == 0 ? "not of this scene" : "") +
              (loads.no_answer > 0 ? " (no answer " + std::to_string(loads.no_answer) + " times)"
                                   : "");
     };
@@ -117,6 +118,8 @@ inline Section six_axis_section() {
       "press", "flat plate, 9.9 N", normal);
   add("", "", "", "cylinder", "cylinder of 12 mm, pressed and dragged", normal);
   add("", "", "", "roll", "sphere of 18 mm", normal);
+  add("", "", "", "two_balls", "two balls, another pad", normal);
+  add("", "", "", "bowl", "hollow object, another pad", normal);
   add("triangular pole dragged along x", "error of F_x, mean / largest", "7.0 % / 19.7 %", "drag",
       "plate dragged half way to slip, slipping, half way back; F_x and F_y together", along);
   add("", "", "", "cylinder", "cylinder dragged across", along);
