@@ -51,7 +51,6 @@ void bind_foam(py::module_& module) {
       .def_readwrite("sample_period_s", &Taxels::sample_period_s)
       .def_readwrite("noise", &Taxels::noise)
       .def_readwrite("noise_factor", &Taxels::noise_factor)
-      .def_readwrite("min_sum", &Taxels::min_sum)
       .def_readwrite("saturated_at", &Taxels::saturated_at);
   py::enum_<PreslipRule>(module, "PreslipRule", "Which rule; see foam/preslip.hpp.")
       .value("grasp_lift", PreslipRule::grasp_lift)

@@ -174,7 +174,7 @@ TEST_CASE("foam hand: the paper's finger of 204 elements, of which one side is t
   CHECK(hand.fingers()[0].location < 64);
   CHECK(hand.fingers()[1].location >= 64);
   CHECK(hand.fingers()[1].location < 128);
-  CHECK(hand.fingers()[0].frozen == 64 + 32 + 32 + 12);
+  CHECK(hand.fingers()[0].left_out == 0);
   CHECK(preslips > 0);
 }
 

@@ -48,12 +48,12 @@ class TaxelNoiseCalibration {
  public:
   /// Refuses bad parameters (parameter_error). Options that depend on the noise need not be set.
   TaxelNoiseCalibration(Index rows, Index cols, const TaxelOptions& options = {})
-      : features_(rows, cols, options),
+      : features_(rows, cols, without_noise(options)),
         now_(static_cast<std::size_t>(rows * cols) + 2, S(0)),
         window_(now_.size(), options.window),
-        spread_(now_.size(), S(0)),
-        variances_(now_.size() - 1),
-        is_bad_(variances_.size(), false) {}
+        residuals_(static_cast<std::size_t>(options.window), S(0)),
+        variances_(now_.size()),
+        is_bad_(now_.size(), false) {}
 
   /// Adds the next sample; false, and nothing changed, if the array has another size or the time is
   /// not later. A jump of the clock begins a new window. A window with a bad reading of a taxel is
@@ -71,17 +71,25 @@ class TaxelNoiseCalibration {
       std::fill(is_bad_.begin(), is_bad_.end(), false);
     }
     const auto readings = as_view(taxels);
-    const std::size_t count = is_bad_.size() - 1;
-    for (std::size_t k = 0; k < count; ++k) {
+    const auto keep = [&](std::size_t k, bool is_good, const S& reading) {  // else the last one
+      now_[k] = is_good ? reading : now_[k];
+      is_bad_[k] = is_bad_[k] || !is_good;
+    };
+    for (std::size_t k = 0; k < taxel_count(); ++k) {
       const auto at = static_cast<Index>(k), cols = features_.cols();
       const S reading = S(readings(at / cols, at % cols));
       keep(k, detail::is_reading(reading, features_.options()), reading);
     }
-    keep(count, sample.is_pressed(), sample.center_x_mm);
-    now_[count + 1] = sample.is_pressed() ? sample.center_y_mm : now_[count + 1];
+    keep(taxel_count(), sample.is_pressed(), sample.center_x_mm);
+    keep(taxel_count() + 1, sample.is_pressed(), sample.center_y_mm);
     window_.push([&](std::size_t k) { return now_[k]; }, is_new);
     if (++in_window_ == features_.options().window) {
-      judge();
+      ++windows_;
+      for (std::size_t k = 0; k < now_.size(); ++k) {
+        if (!is_bad_[k]) {
+          variances_[k].push_back(window_.residuals(k, residuals_));
+        }
+      }
     }
     return true;
   }
@@ -90,7 +98,7 @@ class TaxelNoiseCalibration {
   /// (parameter_error).
   TaxelNoise<S> fit() const {
     using std::sqrt;
-    const std::size_t count = is_bad_.size() - 1;
+    const std::size_t count = taxel_count();
     TaxelNoise<S> noise;
     noise.windows = windows_;
     require("TaxelNoiseCalibration", {{"windows", windows_, at_least(4)}});
@@ -125,32 +133,21 @@ class TaxelNoiseCalibration {
                       ? "fewer than half of the taxels gave readings in range: "
                         "check bytes, range and order"
                       : nullptr;
-    const S centroid_sq = mean_square_of(variances_[count]);
+    const S centroid_sq =
+        (mean_square_of(variances_[count]) + mean_square_of(variances_[count + 1])) / S(2);
     noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : S(sqrt(centroid_sq));
     return noise;
   }
 
  private:
+  static TaxelOptions without_noise(TaxelOptions options) {
+    require(options);
+    options.noise = 0;
+    return options;
+  }
+
+  std::size_t taxel_count() const { return now_.size() - 2; }
   double length() const { return static_cast<double>(features_.options().window); }
-
-  /// The reading of a taxel, or the centroid behind the last one, if it is good; else the last.
-  void keep(std::size_t k, bool is_good, const S& reading) {
-    now_[k] = is_good ? reading : now_[k];
-    is_bad_[k] = is_bad_[k] || !is_good;
-  }
-
-  /// Stores the variances of the window.
-  void judge() {
-    ++windows_;
-    window_.variances(spread_.data());
-    const std::size_t count = is_bad_.size() - 1;
-    spread_[count] = (spread_[count] + spread_[count + 1]) / S(2);
-    for (std::size_t k = 0; k <= count; ++k) {
-      if (!is_bad_[k]) {
-        variances_[k].push_back(S(0) < spread_[k] ? spread_[k] : S(0));
-      }
-    }
-  }
 
   /// Variance from the median of the windows' mean squares; NaN if there are none. It is corrected
   /// for the part removed by the line of each window, and for the median of a chi-square
@@ -167,10 +164,10 @@ class TaxelNoiseCalibration {
   }
 
   TaxelFeatures<S> features_;
-  std::vector<S> now_;  // the taxels, then the centroid
+  std::vector<S> now_;  // the taxels, then both places of the centroid
   detail::TaxelWindow<S> window_;
-  std::vector<S> spread_;
-  std::vector<std::vector<S>> variances_;  // of the windows of each taxel, and of the centroid
+  std::vector<S> residuals_;
+  std::vector<std::vector<S>> variances_;  // of the windows of each of `now_`
   std::vector<bool> is_bad_;               // in the present window
   Index in_window_ = 0;                    // samples of the present window
   Index windows_ = 0;

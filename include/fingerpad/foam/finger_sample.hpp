@@ -58,11 +58,10 @@ struct FingerSample {
   S frequency_hz = S(0);         ///< its waves per second, by the clock
   S deviation = S(0);            ///< its rms, in the unit of the readings
   Index left_out = 0;            ///< taxels that do not count in this sample
-  Index frozen = 0;  ///< taxels whose reading has not changed for long, at 0 or another value
   /// Whether a window was quiet since the start, so that a present vibration has begun after it.
   bool has_rested = true;
   Index vibration_count = 0;
-  /// All vibrations, by their number of waves; that of `location` first.
+  /// All vibrations, by their number of waves.
   std::array<Vibration, 16> vibrations = {};
 
   /// Adds a vibrating taxel; the first is that of `location`. Numbers of waves beyond the size of

@@ -17,8 +17,8 @@
 //
 // "Some tactile elements" may vibrate: all of them are listed, each with its waves.
 // Taxels that are dead, saturated, stuck, flickering or missing are left out. They can vibrate
-// again a whole window after they were last bad. Where most taxels that press are frozen, none is
-// stuck: an object is held still.
+// again a whole window after they were last bad. A taxel is stuck only where it should have
+// changed: an object that is held still stays felt.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -46,12 +46,14 @@ struct TaxelOptions {
   /// A gap counts as at most two periods. A gap longer than this, or a clock that is set back,
   /// begins a new window. > 0.
   double longest_gap_s = 2;
-  double noise = 6;           ///< standard deviation of a taxel at rest, >= 0
-  double noise_factor = 2.5;  ///< vibration exceeds this many standard deviations, >= 0
-  double min_sum = 0;         ///< with a smaller sum of readings there is no centroid, >= 0
+  double noise = 6;  ///< standard deviation of a taxel at rest, >= 0
+  /// Vibration exceeds this many standard deviations, >= 0. A finger is pressed from the sample on
+  /// in which a taxel reads twice as many, until none reads that many.
+  double noise_factor = 2.5;
   double saturated_at = 1e9;  ///< this reading and larger ones do not count, in (0, 1e9]
-  /// A reading that was the same in this many samples is frozen. Unless it is 0, or more than half
-  /// of those that press are frozen, it does not count. >= 0; 0: not checked.
+  /// A taxel is stuck, and does not count, if its reading has stayed the same for this many samples
+  /// in which the median of the others asked it to change by more than its noise. An array of which
+  /// no reading has changed for as long is frozen. >= 0; 0: not checked.
   Index stuck_after = 30;
 };
 
@@ -64,86 +66,69 @@ inline std::string check(const TaxelOptions& o) {
                 {"longest_gap_s", o.longest_gap_s, positive},
                 {"noise", o.noise, not_negative},
                 {"noise_factor", o.noise_factor, not_negative},
-                {"min_sum", o.min_sum, not_negative},
                 {"saturated_at", o.saturated_at, {.min = 0, .max = 1e9, .above_min = true}},
                 {"stuck_after", o.stuck_after, not_negative}});
 }
 
 namespace detail {
 
-/// The last n readings of every taxel, and how much they vary about a straight line. Sums are those
-/// of the differences from the newest reading, so that a large reading costs no digits; places in
-/// the window are counted from its middle.
+/// The last n readings of every taxel, and how they vary about a straight line.
 template <scalar S>
 class TaxelWindow {
  public:
   TaxelWindow(std::size_t taxels, Index length)
-      : length_(length),
-        readings_(taxels * static_cast<std::size_t>(length), S(0)),
-        sum_(taxels, S(0)),
-        tilt_(sum_) {}
+      : length_(length), readings_(taxels * static_cast<std::size_t>(length), S(0)) {}
 
   /// Replaces the oldest reading of every taxel by reading(k); at first all readings.
   template <class Reading>
   void push(const Reading& reading, bool is_first) {
+    const auto length = static_cast<std::size_t>(length_);
     for (Index u = is_first ? 0 : length_ - 1; u < length_; ++u) {
-      const std::size_t begin = static_cast<std::size_t>(oldest_) * sum_.size();
-      for (std::size_t k = 0; k < sum_.size(); ++k) {
-        readings_[begin + k] = reading(k);
+      for (std::size_t k = 0; k * length < readings_.size(); ++k) {
+        readings_[k * length + static_cast<std::size_t>(oldest_)] = reading(k);
       }
       oldest_ = (oldest_ + 1) % length_;
     }
   }
 
-  /// Mean square of the residuals of each taxel about its line; roundoff may make it negative.
-  /// O(taxels length).
-  void variances(S* out) {
-    std::fill(sum_.begin(), sum_.end(), S(0));
-    std::fill(tilt_.begin(), tilt_.end(), S(0));
-    std::fill(out, out + sum_.size(), S(0));
-    const S* const newest = row(length_ - 1);
-    for (Index u = 0; u < length_; ++u) {
-      const S* const now = row(u);
-      const S from_middle = from_middle_of(u);
-      for (std::size_t k = 0; k < sum_.size(); ++k) {
-        const S d = now[k] - newest[k];
-        sum_[k] = sum_[k] + d;
-        tilt_[k] = tilt_[k] + from_middle * d;
-        out[k] = out[k] + d * d;
-      }
+  /// The largest reading of a taxel less its smallest, at least twice its rms about its line.
+  auto range(std::size_t taxel) const {
+    const S* const ring = readings_.data() + taxel * static_cast<std::size_t>(length_);
+    auto low = value(*ring), high = low;
+    for (Index u = 1; u < length_; ++u) {
+      low = (std::min)(low, value(ring[u]));
+      high = (std::max)(high, value(ring[u]));
     }
-    for (std::size_t k = 0; k < sum_.size(); ++k) {
-      out[k] = (out[k] - square(sum_[k]) / n() - square(tilt_[k]) * per_spread()) / n();
-    }
+    return high - low;
   }
 
-  /// Residuals of a taxel about its line, oldest first, after variances(). Returns their mean
-  /// square.
-  S residuals(std::size_t taxel, S* out) const {
-    S squares = S(0);
-    for (Index u = 0; u < length_; ++u) {
-      const S line = sum_[taxel] / n() + tilt_[taxel] * per_spread() * from_middle_of(u);
-      out[u] = row(u)[taxel] - row(length_ - 1)[taxel] - line;
-      squares = squares + square(out[u]);
+  /// Residuals of a taxel about its line, oldest first. Returns their mean square. Sums are those
+  /// of the differences from the newest reading, so that a large reading costs no digits. O(n).
+  S residuals(std::size_t taxel, std::vector<S>& out) const {
+    const auto ring = readings_.begin() + static_cast<Index>(taxel) * length_;
+    std::rotate_copy(ring, ring + oldest_, ring + length_, out.begin());
+    const S n = S(static_cast<int>(length_)), middle = (n - S(1)) / S(2), newest = out.back();
+    S at = -middle, sum = S(0), tilt = S(0), squares = S(0);
+    for (S& r : out) {
+      r = r - newest;
+      sum = sum + r;
+      tilt = tilt + at * r;
+      at = at + S(1);
     }
-    return squares / n();
+    const S mean = sum / n, slope = S(12) * tilt / (n * (square(n) - S(1)));
+    at = -middle;
+    for (S& r : out) {
+      r = r - mean - slope * at;
+      squares = squares + square(r);
+      at = at + S(1);
+    }
+    return squares / n;
   }
 
  private:
-  S n() const { return S(static_cast<int>(length_)); }
-  /// 1 / sum of the squared distances from the middle.
-  S per_spread() const { return S(12) / (n() * (square(n()) - S(1))); }
-  S from_middle_of(Index u) const { return S(static_cast<int>(2 * u + 1 - length_)) / S(2); }
-  /// Readings at one time; u is 0 for the oldest.
-  const S* row(Index u) const {
-    return readings_.data() + static_cast<std::size_t>((oldest_ + u) % length_) * sum_.size();
-  }
-
   Index length_;
   Index oldest_ = 0;
-  std::vector<S> readings_;  // length x taxels, a ring from `oldest_`
-  std::vector<S> sum_;       // of each taxel, in variances()
-  std::vector<S> tilt_;
+  std::vector<S> readings_;  // taxels x length, each a ring from `oldest_`
 };
 
 /// The waves in the residuals of a taxel. A crossing counts when the signal exceeds half of its rms
@@ -194,8 +179,8 @@ class TaxelFeatures {
         taxels_(static_cast<std::size_t>(rows * cols)),
         window_(taxels_.size(), options.window),
         clock_(static_cast<std::size_t>(options.window)),
-        variances_(taxels_.size(), S(0)),
-        residuals_(clock_.size(), S(0)) {
+        residuals_(clock_.size(), S(0)),
+        sorted_(taxels_.size()) {
     const S pitch_mm = S(options.pitch_mm);
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       const S row = S(static_cast<int>(k) / static_cast<int>(cols));
@@ -205,7 +190,7 @@ class TaxelFeatures {
           places_mm.empty() ? Point2<S>{col * pitch_mm, row * pitch_mm} : places_mm[k];
       require("TaxelFeatures", {{"places_mm.x", taxels_[k].place_mm.x, finite_number},
                                 {"places_mm.y", taxels_[k].place_mm.y, finite_number}});
-      taxels_[k].floor = sd >= 0 ? square(Real(options.noise_factor) * sd) : infinite();
+      taxels_[k].least = sd >= 0 ? Real(options.noise_factor) * sd : infinite();
     }
   }
 
@@ -228,7 +213,7 @@ class TaxelFeatures {
   operator()(const Readings& readings, double time_s) {
     FingerSample<S> sample;
     const auto now = as_view(readings);
-    const double step_s = time_s - clock_.back().received_s;
+    const double step_s = time_s - clock_.back();
     const double window_s = options_.sample_period_s * static_cast<double>(options_.window);
     const bool is_new = samples_ == 0 || step_s > options_.longest_gap_s ||
                         step_s < -(std::min)(window_s, options_.longest_gap_s);
@@ -250,18 +235,12 @@ class TaxelFeatures {
   /// What is known of a taxel.
   struct Taxel {
     Point2<S> place_mm = {S(0), S(0)};
-    Real floor = Real(0);    // variance above which it vibrates; infinite: dead
+    Real least = Real(0);    // it vibrates if its rms is larger; infinite: dead
     S reading = S(0);        // the last good one
-    Index same_for = 0;      // samples since it last changed
+    Real others = Real(0);   // median reading of those that press, when it last changed
+    Index due_for = 0;       // samples for which it should have changed since
     Index bad_for = 0;       // samples until the taxel can vibrate again
     Index returned_for = 0;  // samples for which its return from 0 is remembered
-    Index waves = 0;         // in the window, if it vibrates
-  };
-  /// Time of a sample.
-  struct Instant {
-    double received_s = 0;
-    double counted_s = 0;  // gaps shortened to two periods
-    bool is_gap = false;   // a gap precedes it
   };
 
   static constexpr Real infinite() { return (std::numeric_limits<Real>::infinity)(); }
@@ -284,42 +263,41 @@ class TaxelFeatures {
     samples_ = 0;
     unchanged_for_ = options_.stuck_after;
     typical_ = Real(0);
-    has_rested_ = false;
+    is_pressed_ = has_rested_ = false;
     for (Taxel& taxel : taxels_) {
       taxel.reading = S(0);
-      taxel.same_for = taxel.bad_for = taxel.returned_for = 0;
+      taxel.due_for = taxel.bad_for = taxel.returned_for = 0;
     }
   }
 
   /// Stores the usable readings and computes the centroid of those that press.
   template <class View>
   void read(const View& readings, FingerSample<S>& sample) {
-    Point2<S> moment = {S(0), S(0)}, frozen_moment = moment;
-    S frozen_sum = S(0);
-    int pressed = 0, frozen = 0;
+    Point2<S> moment = {S(0), S(0)};
+    bool touches = false, holds = false;
+    auto end = sorted_.begin();
     ++unchanged_for_;
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       const auto at = static_cast<Index>(k);
       const S reading = static_cast<S>(readings(at / cols_, at % cols_));
-      const bool is_counted = counts(reading, taxels_[k]), is_held = is_frozen(taxels_[k]);
-      if (!is_counted) {
+      Taxel& taxel = taxels_[k];
+      if (!counts(reading, taxel)) {
         ++sample.left_out;
       } else if (value(reading) > 0) {
-        (is_held ? frozen_sum : sample.sum) = (is_held ? frozen_sum : sample.sum) + reading;
-        (is_held ? frozen_moment : moment) += reading * taxels_[k].place_mm;
-        ++(is_held ? frozen : pressed);
+        sample.sum = sample.sum + reading;
+        moment += reading * taxel.place_mm;
+        touches = touches || value(reading) > 2 * taxel.least;
+        holds = holds || value(reading) > taxel.least;
       }
-      sample.frozen += is_held ? 1 : 0;
+      if (taxel.least < infinite() && value(taxel.reading) > 0) {
+        *end++ = value(taxel.reading);
+      }
     }
-    if (frozen > pressed) {
-      sample.sum = sample.sum + frozen_sum;
-      moment += frozen_moment;
-      pressed += frozen;
-    } else {
-      sample.left_out += frozen;
-    }
-    typical_ = pressed > 0 ? value(sample.sum) / Real(pressed) : Real(0);
-    if (value(sample.sum) > 0 && value(sample.sum) >= Real(options_.min_sum)) {
+    const auto middle = sorted_.begin() + (end - sorted_.begin()) / 2;
+    std::nth_element(sorted_.begin(), middle, end);
+    typical_ = middle == end ? Real(0) : *middle;
+    is_pressed_ = touches || (is_pressed_ && holds);
+    if (is_pressed_) {
       sample.center_x_mm = moment.x / sample.sum;
       sample.center_y_mm = moment.y / sample.sum;
     }
@@ -329,42 +307,45 @@ class TaxelFeatures {
   bool counts(const S& reading, Taxel& taxel) {
     if (!detail::is_reading(reading, options_)) {
       taxel.bad_for = options_.window;
-      taxel.same_for = 0;
+      taxel.due_for = 0;
       return false;
     }
     const Real before = value(taxel.reading), now = value(reading);
-    const bool is_same = samples_ > 0 && now == before;
-    if (!is_same && samples_ > 0) {
-      unchanged_for_ = 0;
+    const bool is_first = samples_ == 0;
+    if (is_first || now != before) {
+      unchanged_for_ = is_first ? unchanged_for_ : 0;
+      taxel.others = Real(0);
+    } else if (!(taxel.others > 0)) {
+      taxel.others = typical_;
     }
-    taxel.same_for = is_same ? taxel.same_for + 1 : 0;
+    using std::fabs;
+    const Real due = now * (typical_ - taxel.others);
+    const bool is_due = taxel.others > 0 && fabs(due) > taxel.least * taxel.others;
+    taxel.due_for = is_due ? taxel.due_for + 1 : 0;
     taxel.bad_for = (std::max)(taxel.bad_for - 1, Index(0));
     taxel.returned_for = (std::max)(taxel.returned_for - 1, Index(0));
     // a loose contact: twice in a window from 0 to more than others read
-    if (samples_ > 0 && before == 0 && now > typical_ && now * now > taxel.floor) {
+    if (!is_first && before == 0 && now > typical_ && now > taxel.least) {
       taxel.bad_for = taxel.returned_for > 0 ? options_.window : taxel.bad_for;
       taxel.returned_for = options_.window;
     }
     taxel.reading = reading;
     const bool flickers = taxel.bad_for > 0 && taxel.returned_for > 0;
-    return taxel.floor < infinite() && !flickers;
+    return taxel.least < infinite() && !flickers && !is_stuck(taxel);
   }
 
-  bool is_frozen(const Taxel& taxel) const {
-    return options_.stuck_after > 0 && taxel.same_for >= options_.stuck_after;
+  bool is_stuck(const Taxel& taxel) const {
+    return options_.stuck_after > 0 && taxel.due_for >= options_.stuck_after;
   }
 
   /// Stores time and readings of the sample.
   void store(double time_s) {
     const bool is_first = samples_ == 0;
     window_.push([&](std::size_t k) { return taxels_[k].reading; }, is_first);
+    std::move(clock_.begin() + 1, clock_.end(), clock_.begin());
+    clock_.back() = time_s;
     if (is_first) {
-      std::fill(clock_.begin(), clock_.end(), Instant{time_s, time_s});
-    } else {
-      const Instant last = clock_.back();
-      const double step_s = time_s - last.received_s, longest_s = 2 * options_.sample_period_s;
-      std::move(clock_.begin() + 1, clock_.end(), clock_.begin());
-      clock_.back() = {time_s, last.counted_s + (std::min)(step_s, longest_s), step_s > longest_s};
+      std::fill(clock_.begin(), clock_.end(), time_s);
     }
     samples_ = (std::min)(samples_ + 1, options_.window);
     unfilled_for_ =
@@ -373,21 +354,30 @@ class TaxelFeatures {
 
   /// Sets the status of the sample: its vibration, or why this cannot be judged.
   void judge(FingerSample<S>& sample) {
-    const Index gaps =
-        std::count_if(clock_.begin() + 1, clock_.end(), [](const Instant& t) { return t.is_gap; });
-    const bool none_counts = sample.left_out == static_cast<Index>(taxels_.size());
+    Index gaps = 0;
+    double counted_s = 0;  // gaps shortened to two periods
+    for (std::size_t k = 1; k < clock_.size(); ++k) {
+      const double step_s = clock_[k] - clock_[k - 1], longest_s = 2 * options_.sample_period_s;
+      counted_s += (std::min)(step_s, longest_s);
+      gaps += step_s > longest_s ? 1 : 0;
+    }
     const bool none_changes = options_.stuck_after > 0 && unchanged_for_ >= options_.stuck_after;
     if (unfilled_for_ > 2 * options_.window || 2 * gaps > options_.window) {
       sample.status = TaxelStatus::clock_jumps;
-    } else if (none_counts && sample.frozen == 0) {
+    } else if (sample.left_out == static_cast<Index>(taxels_.size())) {
       sample.status = TaxelStatus::no_taxels;
     } else if (samples_ < options_.window) {
       sample.status = TaxelStatus::filling;
-    } else if (none_counts || none_changes) {
+    } else if (none_changes) {
       sample.status = TaxelStatus::frozen;
     } else {
-      sample.status = has_vibration(sample) ? TaxelStatus::vibrating : status_without_vibration();
+      list_vibrations(sample);
+      const bool vibrates = sample.vibration_count > 0;
+      sample.status = vibrates ? TaxelStatus::vibrating : status_without_vibration();
       has_rested_ = has_rested_ || sample.status == TaxelStatus::quiet;
+      // the window reaches one period beyond its newest sample
+      const auto n = static_cast<double>(options_.window);
+      sample.frequency_hz = S(static_cast<double>(sample.waves) * (n - 1) / (n * counted_s));
     }
     sample.has_rested = has_rested_;
   }
@@ -397,8 +387,7 @@ class TaxelFeatures {
     TaxelStatus status = TaxelStatus::no_taxels;
     for (const Taxel& taxel : taxels_) {
       if (can_vibrate(taxel)) {
-        const Real reading = value(taxel.reading);
-        if (reading > 0 && reading * reading > taxel.floor) {
+        if (value(taxel.reading) > 0 && value(taxel.reading) > taxel.least) {
           return TaxelStatus::quiet;
         }
         status = TaxelStatus::too_weak;
@@ -409,39 +398,30 @@ class TaxelFeatures {
 
   /// Whether the taxel was good in its whole window.
   bool can_vibrate(const Taxel& taxel) const {
-    return taxel.floor < infinite() && taxel.bad_for == 0 && !is_frozen(taxel);
+    return taxel.least < infinite() && taxel.bad_for == 0 && !is_stuck(taxel);
   }
 
-  /// Adds the taxels that vibrate to the sample, the strongest first. False: none vibrates.
-  bool has_vibration(FingerSample<S>& sample) {
+  /// Adds the taxels that vibrate to the sample, and which of them vibrates most.
+  void list_vibrations(FingerSample<S>& sample) {
     using std::sqrt;
-    window_.variances(variances_.data());
-    std::size_t most = 0;
+    Index strongest = FingerSample<S>::no_location, waves_of_strongest = 0;
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
-      const bool is_beyond = value(variances_[k]) > taxels_[k].floor && can_vibrate(taxels_[k]);
-      // anew: roundoff alone is no vibration
-      variances_[k] = is_beyond ? window_.residuals(k, residuals_.data()) : S(0);
-      if (value(variances_[k]) > 0) {
-        taxels_[k].waves = detail::count_waves(residuals_, S(sqrt(variances_[k])));
-        most = value(variances_[most]) < value(variances_[k]) ? k : most;
+      if (!can_vibrate(taxels_[k]) || !(window_.range(k) > 2 * taxels_[k].least)) {
+        continue;
+      }
+      const S rms = sqrt(window_.residuals(k, residuals_));
+      if (value(rms) > taxels_[k].least) {
+        const Index waves = detail::count_waves(residuals_, rms);
+        sample.add_vibration(static_cast<Index>(k), waves);
+        if (value(sample.deviation) < value(rms)) {
+          sample.deviation = rms;
+          strongest = static_cast<Index>(k);
+          waves_of_strongest = waves;
+        }
       }
     }
-    if (!(value(variances_[most]) > 0)) {
-      return false;
-    }
-    sample.add_vibration(static_cast<Index>(most), taxels_[most].waves);
-    for (std::size_t k = 0; k < taxels_.size(); ++k) {
-      if (value(variances_[k]) > 0) {
-        sample.add_vibration(static_cast<Index>(k), taxels_[k].waves);
-      }
-    }
-    sample.deviation = sqrt(variances_[most]);
-    // from the oldest sample to one period beyond the newest
-    const double periods = static_cast<double>(options_.window - 1);
-    const double period_s = (clock_.back().counted_s - clock_.front().counted_s) / periods;
-    const double window_s = period_s * static_cast<double>(options_.window);
-    sample.frequency_hz = S(static_cast<double>(sample.waves) / window_s);
-    return true;
+    sample.location = strongest;
+    sample.waves = waves_of_strongest;
   }
 
   Index rows_;
@@ -449,13 +429,14 @@ class TaxelFeatures {
   TaxelOptions options_;
   std::vector<Taxel> taxels_;
   detail::TaxelWindow<S> window_;
-  std::vector<Instant> clock_;  // of the window, oldest first
-  std::vector<S> variances_;    // of each taxel about its line; 0: it does not vibrate
-  std::vector<S> residuals_;    // of one taxel
+  std::vector<double> clock_;  // times of the window, oldest first
+  std::vector<S> residuals_;   // of one taxel
+  std::vector<Real> sorted_;   // readings of those that press, for their median
   Index samples_ = 0;
   Index unfilled_for_ = 0;   // samples since the window was last full
   Index unchanged_for_ = 0;  // samples since any reading changed; stuck_after: none ever has
-  Real typical_ = Real(0);   // mean reading of the taxels that press, in the last sample
+  Real typical_ = Real(0);   // median reading of the taxels that press, in the last sample
+  bool is_pressed_ = false;
   bool has_rested_ = false;  // a window was quiet since the start or the last new clock
 };
 
