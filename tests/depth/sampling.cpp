@@ -160,13 +160,10 @@ TEST_CASE("what changes linearly over the free pad is right between samples", "[
     sample_status(hole, hole) = PixelStatus::saturated;
   }
   Image<double> depth(free.rows, free.cols);
-  Image<PixelStatus> status(free.rows, free.cols);
   for (Index i = 0; i < free.rows; ++i) {
     for (Index j = 0; j < free.cols; ++j) {
-      const auto [found_mm, found_status] = detail::pixel_depth<double>(
-          pad_in_samples, as_view(samples), as_view(sample_status), i, j);
-      depth(i, j) = found_mm;
-      status(i, j) = found_status;
+      depth(i, j) = detail::pixel_depth<double>(pad_in_samples, as_view(samples),
+                                                as_view(sample_status), i, j);
     }
   }
   Index found = 0;
@@ -174,11 +171,8 @@ TEST_CASE("what changes linearly over the free pad is right between samples", "[
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
       const bool in_hole = has_hole && i / step == hole && j / step == hole;
-      const bool inside = free.in_pad(i, j);
-      CHECK(std::isnan(depth(i, j)) == (in_hole || status(i, j) != PixelStatus::ok));
-      CHECK((status(i, j) == PixelStatus::outside_pad) == !inside);
-      CHECK((status(i, j) == PixelStatus::saturated) == (inside && in_hole));
-      if (status(i, j) == PixelStatus::ok) {
+      CHECK((std::isnan(depth(i, j)) || (free.in_pad(i, j) && !in_hole)));
+      if (!std::isnan(depth(i, j))) {
         ++found;
         const double truth =
             free.depth(i, j) + moved(static_cast<double>(i), static_cast<double>(j));
@@ -205,8 +199,7 @@ TEST_CASE("what moves a single row or column of samples moves every pixel", "[sa
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < cols; ++j) {
       const auto found = detail::pixel_depth(pad, as_view(samples), as_view(status), i, j);
-      CHECK(found.depth_mm == 6.0F);
-      CHECK(found.status == PixelStatus::ok);
+      CHECK(found == 6.0F);
     }
   }
 }

@@ -587,9 +587,10 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
         px.push_back({seen.x + 0.06 * random.normal(), seen.y + 0.06 * random.normal()});
       }
       const fingerpad::StridedView<const Point2<double>> dots(px.data(), rows, 1, 1);
-      const auto seen = wrench(dots, {touching.data(), rows, 1, 1}, {}, {}, 1, mpa);
+      wrench.read(dots, {touching.data(), rows, 1, 1}, {}, {}, 1);
+      const auto seen = wrench(mpa);
       if (wrench.is_free(seen)) {
-        wrench.learn(dots, {}, mpa);
+        wrench.learn(mpa);
       }
       if (frame > 0) {
         REQUIRE(seen.ok());

@@ -440,7 +440,7 @@ TEST_CASE("readings that saturate or are stuck are left out") {
   const auto stuck =
       run(taxels_of(rows, cols, samples, loosened), with_foam(R"("noise": 3, "stuck_after": 30)"));
   CHECK(stuck[69].at("taxels_left_out") == "0");  // nothing has asked it to change for so long
-  CHECK(stuck[89].at("taxels_left_out") == "1");
+  CHECK(stuck[99].at("taxels_left_out") == "1");
 }
 
 TEST_CASE("lost readings do not end the run") {

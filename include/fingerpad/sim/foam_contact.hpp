@@ -28,7 +28,7 @@ namespace detail {
 template <scalar S>
 S positive_power(const S& x, const S& exponent) {
   using std::pow;
-  return value(x) <= 0 ? S(0) : S(pow(x, exponent));
+  return value(x) <= 0 ? S(0) : pow(x, exponent);
 }
 }  // namespace detail
 
@@ -38,13 +38,6 @@ struct PolymerFriction {
   S factor = S(1);           ///< K > 0, N^(1 - beta); 1 as in eq. 8
   S exponent = S(2) / S(3);  ///< beta, in (0, 1]: 2/3 for rubber-like solids, 1 is Coulomb's law
 };
-
-template <scalar S>
-std::string check(const PolymerFriction<S>& friction) {
-  return check("PolymerFriction",
-               {{"factor", friction.factor, positive},
-                {"exponent", friction.exponent, {.min = 0, .max = 1, .above_min = true}}});
-}
 
 /// The largest force of friction under a normal load, N; 0 for loads <= 0.
 template <scalar S>
@@ -187,35 +180,19 @@ typename MassSpringDamper<S>::Motion causal_response(const MassSpringDamper<S>& 
   return motion;
 }
 
-/// The suspension along the slip.
-template <scalar S = double>
-struct SlipDrag {
-  S damping_n_s_per_mm = S(1);  ///< c_a >= 0
-  S stiffness_n_per_mm = S(1);  ///< k_a >= 0
-  S speed_mm_per_s = S(1);      ///< H: x = H t
-  S frame_mm = S(0);            ///< x_ie; 0 in eq. 7
-};
-
-/// c_a H - k_a x_ie + k_a H t: the drag without friction, with A and B as in eq. 10.
-template <scalar S>
-RampLoad<S> drag_load(const SlipDrag<S>& drag) {
-  return {drag.damping_n_s_per_mm * drag.speed_mm_per_s - drag.stiffness_n_per_mm * drag.frame_mm,
-          drag.stiffness_n_per_mm * drag.speed_mm_per_s};
-}
-
-/// A + B t of eq. 8, for a deformation y = z^2 / 2p in mm that counts as a load of y N. The printed
+/// A + B t of eq. 8, for a deformation y = z^2 / 2p in mm that counts as a load of y N, from the
+/// drag without friction of eq. 7, start_n = c_a H - k_a x_ie and rise_n_per_s = k_a H. The printed
 /// factor z^(2/3) holds for 2p = 1 and K = 1.
 template <scalar S>
-RampLoad<S> slip_load(const SlipDrag<S>& drag,
+RampLoad<S> slip_load(const RampLoad<S>& drag,
                       const PolymerFriction<S>& friction,
                       const S& deformation_mm) {
-  const RampLoad<S> load = drag_load(drag);
   const S factor = inverse_friction_coefficient(friction, deformation_mm);
-  return {load.start_n * factor, load.rise_n_per_s * factor};
+  return {drag.start_n * factor, drag.rise_n_per_s * factor};
 }
 
 /// cbrt(C + D sin(a t)) (A + B t), the load while lifting, for friction with the exponent 2/3: C is
-/// z^2 / (2p K^3), D is 1 mm / K^3, A + B t is drag_load().
+/// z^2 / (2p K^3), D is 1 mm / K^3, A + B t is the drag without friction of slip_load().
 template <scalar S = double>
 struct LiftLoad {
   S middle = S(2);               ///< C; where C + D sin(a t) < 0, nothing is pressed and drags

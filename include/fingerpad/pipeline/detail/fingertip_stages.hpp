@@ -141,51 +141,83 @@ struct FingertipLookUp {
 /// touch is never taken for a free pad: after the first, a frame whose force is beyond two standard
 /// deviations is not learnt from.
 struct FingertipWrench {
-  struct Place {
-    double arc_mm = 0, azimuth_rad = 0;
+  struct Dot {
+    Point2<double> px = {};  // in this frame; NaN: not found
+    double sd_px = 0;
+    bool touches = false;
+    double arc_mm = 0, azimuth_rad = 0;  // where it lies, from so many frames
     int frames = 0;
   };
   static constexpr int free_frames = 16;
 
   Wrench<> wrench;
-  OwnedGrid<Place> places;
-  OwnedGrid<Place> side_places;  // one column
-  OwnedGrid<std::uint8_t> side_touching;
+  std::vector<Dot> dots;  // the printed grid, then the rows around it
+  std::vector<std::uint8_t> side_touching;
   ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
 
   FingertipWrench(const Camera<double>& camera, const FingertipOptions& o)
-      : wrench(camera, *o.wrench),
-        places(o.free_dots_mm.rows(), o.free_dots_mm.cols()),
-        side_places((require("FingertipOptions",
-                             {{"dot_sd_px", o.dot_sd_px, positive},
-                              {"side_dots", o.side_dots, within(0, 100000)}}),
-                     o.side_dots),
-                    1),
-        side_touching(side_places.rows, 1),
-        dot_sd_px(o.dot_sd_px) {
-    marks = ReservedVector<fingerpad::Mark>(places.cells.size() + side_places.cells.size());
+      : wrench(camera, *o.wrench), dot_sd_px(o.dot_sd_px) {
+    require("FingertipOptions",
+            {{"dot_sd_px", o.dot_sd_px, positive}, {"side_dots", o.side_dots, within(0, 100000)}});
+    side_touching.resize(static_cast<std::size_t>(o.side_dots));
+    dots.resize(static_cast<std::size_t>(o.free_dots_mm.rows() * o.free_dots_mm.cols()) +
+                side_touching.size());
+    marks = ReservedVector<fingerpad::Mark>(dots.size());
+  }
+
+  /// Takes the dots of a frame. `touching` is of the printed ones and has their size; `mask` has
+  /// the contact in samples of `step` pixels.
+  template <class Dots>
+  void read(const Dots& dots_px,
+            const StridedView<const std::uint8_t>& touching,
+            std::span<const fingerpad::Mark> side_dots,
+            const StridedView<const std::uint8_t>& mask,
+            int step) {
+    using Traits = point_traits<cell_t<Dots>>;
+    Dot* to = dots.data();
+    for (Index i = 0; i < touching.rows(); ++i) {
+      for (Index j = 0; j < touching.cols(); ++j, ++to) {
+        const cell_t<Dots> p = dots_px(i, j);
+        to->px = {static_cast<double>(Traits::x(p)), static_cast<double>(Traits::y(p))};
+        to->sd_px = dot_sd_px;
+        to->touches = touching(i, j) != 0;
+      }
+    }
+    const std::span<Dot> sides(to, side_touching.size());
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      constexpr double none = not_a_number<double>();
+      sides[k].px = k < side_dots.size() ? side_dots[k].px : Point2<double>{none, none};
+      sides[k].sd_px = k < side_dots.size() ? side_dots[k].sd_px : none;
+    }
+    const auto count = static_cast<Index>(sides.size());
+    const LazyView in_samples(count, 1, [&](Index k, Index) {
+      const Point2<double>& px = sides[static_cast<std::size_t>(k)].px;
+      return Point2<double>{sampled_px(px.x, step), sampled_px(px.y, step)};
+    });
+    (void)contact_at_dots(in_samples, mask,
+                          StridedView<std::uint8_t>(side_touching.data(), count, 1, 1));
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      sides[k].touches = side_touching[k] != 0;
+    }
   }
 
   /// Learns from a frame that touches nothing.
-  template <class Dots>
-  void learn(const Dots& dots_px, std::span<const fingerpad::Mark> side_dots, double pressure_mpa) {
+  void learn(double pressure_mpa) {
     if (learnt == free_frames || !wrench.begin(pressure_mpa)) {
       return;
     }
     ++learnt;
-    const auto add = [&](Place& place, const Point2<double>& px) {
-      if (const auto found = wrench.place_in_free_picture(px)) {
-        ++place.frames;
+    for (Dot& dot : dots) {
+      if (const auto found = wrench.place_in_free_picture(dot.px)) {
+        ++dot.frames;
         const double turn =
-            std::remainder(found->azimuth_rad - place.azimuth_rad, 2 * std::numbers::pi);
-        place.arc_mm += (found->arc_mm - place.arc_mm) / place.frames;
-        place.azimuth_rad += turn / place.frames;
+            std::remainder(found->azimuth_rad - dot.azimuth_rad, 2 * std::numbers::pi);
+        dot.arc_mm += (found->arc_mm - dot.arc_mm) / dot.frames;
+        dot.azimuth_rad += turn / dot.frames;
       }
-    };
-    for_each(dots_px, add);
-    for_each_side(side_dots, [&](Place& place, const fingerpad::Mark& dot) { add(place, dot.px); });
+    }
   }
 
   /// Whether a frame without contact may be learnt from: its force is within two standard
@@ -199,57 +231,16 @@ struct FingertipWrench {
     return is_small || seen.status == WrenchStatus::too_few_marks;
   }
 
-  /// Of the dots that nothing touches. `mask` has the contact in samples of `step` pixels.
-  template <class Dots>
-  WrenchResult operator()(const Dots& dots_px,
-                          const StridedView<const std::uint8_t>& touching,
-                          std::span<const fingerpad::Mark> side_dots,
-                          const StridedView<const std::uint8_t>& mask,
-                          int step,
-                          double pressure_mpa) {
+  /// Of the dots that nothing touches.
+  WrenchResult operator()(double pressure_mpa) {
     marks.clear();
-    const LazyView sides(side_places.rows, 1, [&](Index k, Index) {
-      constexpr double none = not_a_number<double>();
-      const auto at = static_cast<std::size_t>(k);
-      const auto px = at < side_dots.size() ? side_dots[at].px : Point2<double>{none, none};
-      return Point2<double>{sampled_px(px.x, step), sampled_px(px.y, step)};
-    });
-    (void)contact_at_dots(sides, mask, side_touching.view());
-    const std::uint8_t* touched = side_touching.cells.data();
-    const auto add = [&](const Place& place, const Point2<double>& px, double sd_px) {
-      if (*touched++ == 0 && place.frames > 0) {
+    for (const Dot& dot : dots) {
+      if (!dot.touches && dot.frames > 0) {
         marks.push_back(
-            {place.arc_mm, place.azimuth_rad, px, sd_px * std::sqrt(1 + 1.0 / place.frames)});
+            {dot.arc_mm, dot.azimuth_rad, dot.px, dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
       }
-    };
-    for_each_side(side_dots, [&](const Place& place, const fingerpad::Mark& dot) {
-      add(place, dot.px, dot.sd_px);
-    });
-    touched = touching.data();
-    for_each(dots_px,
-             [&](const Place& place, const Point2<double>& px) { add(place, px, dot_sd_px); });
+    }
     return wrench(marks, pressure_mpa);
-  }
-
- private:
-  template <class Use>
-  void for_each_side(std::span<const fingerpad::Mark> side_dots, const Use& use) {
-    const std::size_t count = (std::min)(side_dots.size(), side_places.cells.size());
-    for (std::size_t k = 0; k < count; ++k) {
-      use(side_places.cells[k], side_dots[k]);
-    }
-  }
-
-  template <class Dots, class Use>
-  void for_each(const Dots& dots_px, const Use& use) {
-    using Traits = point_traits<cell_t<Dots>>;
-    for (Index i = 0; i < places.rows; ++i) {
-      for (Index j = 0; j < places.cols; ++j) {
-        const cell_t<Dots> p = dots_px(i, j);
-        use(places.view()(i, j),
-            Point2<double>{static_cast<double>(Traits::x(p)), static_cast<double>(Traits::y(p))});
-      }
-    }
   }
 };
 

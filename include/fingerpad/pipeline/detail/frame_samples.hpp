@@ -55,31 +55,23 @@ struct SampledPad {
   Index own_col(Index px) const { return (std::min)(px / step, samples.cols - 1); }
 };
 
-template <scalar S>
-struct PixelDepth {
-  S depth_mm = not_a_number<S>();
-  PixelStatus status = PixelStatus::outside_pad;
-};
-
 /// Depth of a pixel from the depth of the samples: the difference from the free pad is interpolated
 /// bilinearly and added to the free pad. Beside missing samples it is extrapolated from the other
-/// side. A pixel has no depth if its own sample has none, except at the pad's rim, where a sample
-/// may hold only some pixels.
+/// side. NaN where its own sample has none, except at the pad's rim, where a sample may hold only
+/// some pixels.
 template <scalar S>
-PixelDepth<S> pixel_depth(const SampledPad<S>& free,
-                          const StridedView<const S>& samples_mm,
-                          const StridedView<const PixelStatus>& sample_status,
-                          Index row,
-                          Index col) {
-  const PixelStatus own = sample_status(free.own_row(row), free.own_col(col));
+S pixel_depth(const SampledPad<S>& free,
+              const StridedView<const S>& samples_mm,
+              const StridedView<const PixelStatus>& sample_status,
+              Index row,
+              Index col) {
   if (free.step == 1) {
-    return {samples_mm(row, col), own};
+    return samples_mm(row, col);
   }
-  if (!free.pixels.in_pad(row, col)) {
-    return {};
-  }
-  if (own != PixelStatus::ok && own != PixelStatus::outside_pad) {
-    return {not_a_number<S>(), own};
+  const PixelStatus own = sample_status(free.own_row(row), free.own_col(col));
+  if (!free.pixels.in_pad(row, col) ||
+      (own != PixelStatus::ok && own != PixelStatus::outside_pad)) {
+    return not_a_number<S>();
   }
   struct Place {
     Index sample;  // the one before
@@ -106,12 +98,12 @@ PixelDepth<S> pixel_depth(const SampledPad<S>& free,
         const S up = between(i), low = between(i + down.next);
         const S change = up + (down.behind - S(static_cast<double>(di))) * (low - up);
         if (change == change) {
-          return {free.pixels.depth(row, col) + change, PixelStatus::ok};
+          return free.pixels.depth(row, col) + change;
         }
       }
     }
   }
-  return {not_a_number<S>(), PixelStatus::not_a_number};
+  return not_a_number<S>();
 }
 
 }  // namespace detail
