@@ -121,11 +121,15 @@ void show(const std::string& name, const Detection& d) {
   SUCCEED();
 }
 
-int false_alarms(PreslipRule rule, double minutes, double rate_hz, unsigned seed) {
+/// Of a hold whose noise is `noisier` times as large as stated.
+int false_alarms(
+    PreslipRule rule, double minutes, double rate_hz, unsigned seed, double noisier = 1) {
   FoamScene scene;
   scene.rows = 8;
   scene.drift = 0.3;
-  FoamSignal signal(scene, seed);
+  FoamScene noisy = scene;
+  noisy.noise *= noisier;
+  FoamSignal signal(noisy, seed);
   Chain chain(rule, scene, rate_hz);
   int alarms = 0;
   for (int n = 0; n < minutes * 60 * rate_hz; ++n) {
@@ -200,6 +204,10 @@ TEST_CASE("pre-slip of known signals: no alarm where nothing slips", "[preslip]"
   // the goal is at most one alarm in ten minutes
   CHECK(false_alarms(PreslipRule::grasp_optimise, 20, 31, 1) == 0);
   CHECK(false_alarms(PreslipRule::grasp_lift, 20, 31, 2) == 0);
+  CHECK(false_alarms(PreslipRule::grasp_lift, 20, 31, 3, 1.25) == 0);
+  const int wrong_noise = false_alarms(PreslipRule::grasp_lift, 20, 31, 3, 1.5);
+  INFO("noise 1.5 times as large as stated: " << wrong_noise << " alarms in 20 minutes");
+  CHECK(wrong_noise > 5);
 }
 
 namespace {

@@ -18,6 +18,8 @@
 
 #include "common/failure.hpp"
 #include "foam/recording.hpp"
+#include "replay/check/check.hpp"
+#include "replay/foam/recording.hpp"
 #include "replay/replay.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
@@ -441,6 +443,81 @@ TEST_CASE("readings that saturate or are stuck are left out") {
       run(taxels_of(rows, cols, samples, loosened), with_foam(R"("noise": 3, "stuck_after": 30)"));
   CHECK(stuck[69].at("taxels_left_out") == "0");  // nothing has asked it to change for so long
   CHECK(stuck[99].at("taxels_left_out") == "1");
+}
+
+TEST_CASE("counts become newtons by what is stated of the array or of each taxel") {
+  const Taxels taxels = taxels_of(rows, cols, samples, creeping);
+  const auto counts = run(taxels), all = run(taxels, with_foam(R"("newton_per_unit": 0.01)"));
+  std::string each;
+  for (int k = 0; k < rows * cols; ++k) {
+    each += (k > 0 ? ", " : "") + number(k < cols ? 0.02 : 0.01);
+  }
+  const auto twice = run(taxels, with_foam(R"("newton_per_unit": [)" + each + "]"));
+  CHECK(first_alarm(all) == first_alarm(counts));
+  for (std::size_t k = 0; k < counts.size(); k += 10) {
+    double first_row = 0;
+    for (int j = 0; j < cols; ++j) {
+      first_row += creeping(static_cast<int>(k), 0, j);
+    }
+    CHECK(std::stod(all[k].at("force_n")) == Approx(0.01 * std::stod(counts[k].at("sum"))));
+    CHECK(std::stod(twice[k].at("force_n")) ==
+          Approx(0.01 * (std::stod(counts[k].at("sum")) + first_row)));
+  }
+  CHECK(Workplace(taxels, with_foam(R"("newton_per_unit": [1, 2])"))
+            .complaint()
+            .find("foam.newton_per_unit has 2 entries, but taxels.csv has 24 taxels") !=
+        std::string::npos);
+}
+
+TEST_CASE("taxels lie where places_mm says") {
+  const Taxels taxels = taxels_of(rows, cols, samples, creeping);
+  const auto places = [](double pitch_mm, double from_mm) {
+    std::string list;
+    for (int k = 0; k < rows * cols; ++k) {
+      list += (k > 0 ? ", [" : "[") + number(from_mm + pitch_mm * (k % cols)) + ", " +
+              number(pitch_mm * (k / cols)) + "]";
+    }
+    return with_foam("\"places_mm\": [" + list + "]");
+  };
+  CHECK(text_of(taxels, places(3.4, 0)) == text_of(taxels));
+  const auto there = run(taxels, places(3.4, 50)), here = run(taxels);
+  CHECK(std::stod(there[9].at("center_x_mm")) == Approx(std::stod(here[9].at("center_x_mm")) + 50));
+  CHECK(Workplace(taxels, with_foam(R"("places_mm": [[0, 0]])"))
+            .complaint()
+            .find("foam.places_mm has 1 entries, but taxels.csv has 24 taxels") !=
+        std::string::npos);
+}
+
+TEST_CASE("a zero that drifts is told and taken off, and so is a rate that is too low") {
+  // pressed from sample 70 to 130, while every taxel's zero rises by its own 10 to 33 counts
+  const auto load = [](int k, int i, int j) {
+    return k < 70 || k >= 130 ? 3 * noise(k, i, j) : 3 * held(k, i, j);
+  };
+  const auto drifts = [&](int k, int i, int j) {
+    return std::round(load(k, i, j) + (10 + (7 * (i * cols + j)) % 24) * k / 199.0);
+  };
+  const Workplace plain(taxels_of(rows, cols, 200, load)), work(taxels_of(rows, cols, 200, drifts));
+  const auto told = [](const Workplace& in) {
+    const auto recording = replay::open_foam_recording(in.folder());
+    return recording.told.empty() ? "" : recording.told.back().what;
+  };
+  CHECK(told(plain).find("the zero of the taxels moves") == std::string::npos);
+  CHECK(told(work).find("the zero of the taxels moves by up to ") == 0);
+  REQUIRE(plain.complaint() == "");
+  REQUIRE(work.complaint() == "");
+  const auto with = work.table(), without = plain.table();
+  CHECK(std::stod(with[100].at("sum")) == Approx(std::stod(without[100].at("sum"))).epsilon(0.02));
+  CHECK(with[60].at("center_x_mm") == "");  // touch and release
+  CHECK(with[75].at("center_x_mm") != "");
+  CHECK(with[190].at("center_x_mm") == "");
+  Taxels slow = taxels_of(rows, cols, 60, held);
+  for (int k = 0; k < 60; ++k) {
+    slow.cell(k, "time_s") = number(0.2 * k);
+  }
+  const auto findings = replay::check_recording(Workplace(slow).folder());
+  CHECK(std::any_of(findings.begin(), findings.end(), [](const replay::Finding& finding) {
+    return finding.what.find("a window of 16 samples takes 3.2 s") == 0;
+  }));
 }
 
 TEST_CASE("lost readings do not end the run") {

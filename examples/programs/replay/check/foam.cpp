@@ -82,6 +82,15 @@ void check_foam(const FoamRecording& recording, Findings& findings) {
   const TaxelTable& table = recording.table;
   check_clock("taxels.csv, time_s", "sample", table.times_s, findings);
   findings.insert(findings.end(), recording.told.begin(), recording.told.end());
+  const fingerpad::TaxelOptions& taxels = recording.sensor.taxels;
+  const double window_s = taxels.sample_period_s * static_cast<double>(taxels.window);
+  if (window_s > 2) {
+    findings.push_back({"taxels.csv, time_s",
+                        "a window of " + std::to_string(taxels.window) + " samples takes " +
+                            short_number(window_s) +
+                            " s, and no rule warns before a whole one was quiet",
+                        "Sample faster, or set foam.window to fewer samples, at least 4."});
+  }
   std::size_t still = 0, first_still = 0;
   double most_pressed = 0, largest = 0;
   for (std::size_t taxel = 0; taxel < table.taxels(); ++taxel) {

@@ -149,7 +149,9 @@ cv::Mat foam_chart(const std::string& title,
                                      : format(", %.10g s", std::stod(rows[*alarm].time_s))),
                 letter, ink::accent, is_right ? Align::right : Align::left);
   }
-  paint_curves(canvas, axis, sums, "sum of the readings", rows, sum_of);
+  paint_curves(canvas, axis, sums,
+               recording.sensor.newton_per_unit.empty() ? "sum of the readings" : "force [N]", rows,
+               sum_of);
   paint_legend(canvas, rows.front().fingers.size(), sums.top_px);
   paint_curves(canvas, axis, waves, "waves in the window of the strongest vibrating taxel", rows,
                waves_of);

@@ -157,6 +157,43 @@ void take_off(FoamRecording& recording, const Values& zero, const std::string& w
                             false});
 }
 
+/// Takes off, in proportion to time, what the zero moves from the first samples, which are free, to
+/// as many at the end, if nothing touches the array there: the readings have changed little against
+/// the `load`, and in another way.
+void take_off_drift(FoamRecording& recording,
+                    std::size_t free_ones,
+                    const Values& load,
+                    double noise) {
+  TaxelTable& table = recording.table;
+  const std::size_t n = table.taxels(), samples = table.frames.size();
+  std::vector<std::size_t> first(free_ones), last(free_ones);
+  std::iota(first.begin(), first.end(), std::size_t{0});
+  std::iota(last.begin(), last.end(), samples - free_ones);
+  const Values before = means_of(table, first);
+  Values drift = means_of(table, last);
+  double most = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    drift[k] -= before[k];
+    most = std::fmax(most, std::abs(drift[k]));
+  }
+  const double largest = *std::max_element(load.begin(), load.end());
+  if (!(most > std::fmax(3 * noise, 0.01 * largest) && most < 0.2 * largest &&
+        std::abs(line_through(load, drift).correlation) < 0.5)) {
+    return;
+  }
+  for (std::size_t k = 0; k < table.readings.size(); ++k) {
+    const double middle = static_cast<double>(free_ones - 1) / 2;  // of the first ones
+    const double since =
+        (static_cast<double>(k / n) - middle) / static_cast<double>(samples - free_ones);
+    table.readings[k] -=
+        table.readings[k] >= recording.sensor.taxels.saturated_at ? 0 : since * drift[k % n];
+  }
+  recording.told.push_back({"taxels.csv",
+                            "the zero of the taxels moves by up to " + number(most) +
+                                " from the first samples to the last, and this is taken off",
+                            "Let the array warm up, and record it free before and after.", false});
+}
+
 /// Takes off what the taxels read while nothing touched them: until free_until_s, else in the first
 /// samples, if the load is later greater, never smaller, and spread in another way. Where the load
 /// changes evenly, what does not change with it is no load.
@@ -215,6 +252,7 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
     if (*std::max_element(first.begin(), first.end()) > 3 * noise) {
       take_off(recording, first, "in the first samples, before anything touches them");
     }
+    take_off_drift(recording, first_ones, rise, noise);
   } else if (sum_of(change) > 0.1 * sum_of(high) && held.correlation > 0.98 &&
              held.offset > 5 * held.offset_sd + 0.02 * most) {
     fail(folder / "taxels.csv",

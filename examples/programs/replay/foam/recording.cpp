@@ -261,6 +261,17 @@ fingerpad::StridedView<const double> FoamRecording::finger(int sample, int finge
   return {all + place.first_row * table.cols + place.first_col, place.rows, place.cols, table.cols};
 }
 
+std::size_t FoamRecording::taxel_of(int finger, Index k) const {
+  const FingerPlace& place = sensor.fingers[static_cast<std::size_t>(finger)];
+  const Index row = place.first_row + k / place.cols, col = place.first_col + k % place.cols;
+  return static_cast<std::size_t>(row * table.cols + col);
+}
+
+double FoamRecording::newtons_of(std::size_t taxel) const {
+  const std::vector<double>& all = sensor.newton_per_unit;
+  return all.empty() ? 1 : all[all.size() > 1 ? taxel : 0];
+}
+
 std::string taxel_name(const TaxelTable& table, std::size_t taxel) {
   const int at = static_cast<int>(taxel);
   return name_of(Place{at / table.cols, at % table.cols});
@@ -286,6 +297,16 @@ FoamRecording open_foam_recording(const fs::path& folder) {
     sensor.fingers = {{0, recording.table.rows, 0, recording.table.cols}};
   }
   check_fingers(folder / "sensor.json", recording);
+  const std::size_t all = recording.table.taxels(), newtons = sensor.newton_per_unit.size();
+  const auto expects_all = [&](const char* key, std::size_t given) {
+    if (given != 0 && given != all) {
+      fail(folder / "sensor.json", std::string("foam.") + key + " has " + std::to_string(given) +
+                                       " entries, but taxels.csv has " + std::to_string(all) +
+                                       " taxels");
+    }
+  };
+  expects_all("newton_per_unit", newtons == 1 ? 0 : newtons);
+  expects_all("places_mm", sensor.places_mm.size());
   fingerpad::TaxelOptions& taxels = sensor.taxels;
   const double measured_s = median_step_s(recording.table.times_s);
   expects_seconds(folder / "taxels.csv", measured_s);

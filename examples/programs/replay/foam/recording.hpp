@@ -45,6 +45,10 @@ struct FoamRecording {
   /// A time of sensor.json on the clock of the table: from the first sample on, if that comes later
   /// (as with seconds since 1970).
   double seconds_in(double stated_s) const;
+  /// Number in the array of the k-th taxel of a finger.
+  std::size_t taxel_of(int finger, fingerpad::Index k) const;
+  /// What a unit of its readings is in N; 1 without newton_per_unit.
+  double newtons_of(std::size_t taxel) const;
   int fingers() const { return static_cast<int>(sensor.fingers.size()); }
   /// The readings of one finger.
   fingerpad::StridedView<const double> finger(int sample, int finger) const;

@@ -81,6 +81,26 @@ void print_fingers(const FoamRecording& recording, const std::vector<FoamNoise>&
   }
 }
 
+/// "from 0.5 s to 3.2 s, from 4.1 s on": when a finger is pressed.
+std::string touches_of(const std::vector<FoamRow>& rows, std::size_t finger) {
+  std::string touches;
+  bool is_pressed = false;
+  int count = 0;
+  for (const FoamRow& row : rows) {
+    if (!row.was_taken() || row.fingers[finger].is_pressed() == is_pressed) {
+      continue;
+    }
+    is_pressed = !is_pressed;
+    count += is_pressed ? 1 : 0;
+    if (count > 3) {
+      return touches + ", ...";
+    }
+    touches += is_pressed ? (count > 1 ? ", from " : "from ") : " to ";
+    touches += row.time_s + " s";
+  }
+  return touches.empty() ? "never" : touches + (is_pressed ? " on" : "");
+}
+
 void print_summary(const Options& options,
                    const FoamRecording& recording,
                    const std::vector<FoamNoise>& noise,
@@ -102,6 +122,14 @@ void print_summary(const Options& options,
   if (not_taken > 0) {
     std::printf("left out     %td samples: the time is missing or not later than before\n",
                 not_taken);
+  }
+  for (std::size_t f = 0; f < noise.size(); ++f) {
+    const std::string which = noise.size() > 1 ? "finger " + std::to_string(f) + " " : "";
+    std::printf("%s %s%s\n", f == 0 ? "pressed     " : "            ", which.c_str(),
+                touches_of(rows, f).c_str());
+  }
+  if (recording.sensor.newton_per_unit.empty()) {
+    std::printf("sum          in the unit of the readings; newtons need foam.newton_per_unit\n");
   }
   std::printf("vibrating    in %td samples\n", count([](const FoamRow& row) {
                 return std::any_of(row.fingers.begin(), row.fingers.end(), [](const auto& finger) {

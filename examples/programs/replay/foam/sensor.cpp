@@ -34,12 +34,40 @@ std::vector<FingerPlace> read_fingers(const std::filesystem::path& file, const J
   return fingers;
 }
 
+std::vector<double> read_newtons(const JsonSection& foam) {
+  const nlohmann::json& given = foam.at("newton_per_unit");
+  const nlohmann::json list = given.is_array() ? given : nlohmann::json::array({given});
+  std::vector<double> numbers;
+  for (const nlohmann::json& one : list) {
+    if (!one.is_number() || !(one.get<double>() > 0)) {
+      foam.refuse("newton_per_unit must be a number > 0, or a list of one for each taxel");
+    }
+    numbers.push_back(one.get<double>());
+  }
+  return numbers;
+}
+
+std::vector<fingerpad::Point2<double>> read_places(const JsonSection& foam) {
+  const nlohmann::json& list = foam.at("places_mm");
+  std::vector<fingerpad::Point2<double>> places;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const nlohmann::json& one = list.is_array() ? list[k] : list;
+    if (!one.is_array() || one.size() != 2 || !one[0].is_number() || !one[1].is_number()) {
+      foam.refuse("places_mm must be a list of [x, y] for each taxel");
+    }
+    places.push_back({one[0].get<double>(), one[1].get<double>()});
+  }
+  return places;
+}
+
 /// Section "foam" with its known keys.
 JsonSection foam_section(const JsonSection& root) {
   return root.section(
       "foam",
       {{"fingers", "position of each finger in the array"},
        {"pitch_mm", "distance between neighbouring taxels, mm"},
+       {"places_mm", "[x, y] of each taxel, row by row, mm"},
+       {"newton_per_unit", "newtons for one unit of a reading, of all taxels or a list of each"},
        {"window", "number of samples over which vibration is measured"},
        {"sample_period_s", "nominal time between samples, s"},
        {"noise", "standard deviation of a taxel at rest, in the unit of the readings"},
@@ -80,6 +108,12 @@ void read_options(const JsonSection& foam, FoamSensor& sensor) {
   integer("history", sensor.rules.history);
   integer("least_waves", sensor.rules.min_waves);
   number("centroid_tolerance_mm", sensor.rules.centroid_tolerance_mm);
+  if (foam.has("newton_per_unit")) {
+    sensor.newton_per_unit = read_newtons(foam);
+  }
+  if (foam.has("places_mm")) {
+    sensor.places_mm = read_places(foam);
+  }
   if (foam.has("rule")) {
     const std::string rule = foam.one_of("rule", {"grasp_lift", "grasp_optimise", "both"});
     sensor.grasp_lift = rule != "grasp_optimise";

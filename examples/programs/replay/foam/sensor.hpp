@@ -29,6 +29,8 @@ struct FoamSensor {
   std::optional<double> quiet_until_s;    ///< empty: the first windows are assumed quiet
   std::optional<double> sample_period_s;  ///< empty: from the recording
   std::optional<double> longest_gap_s;    ///< empty: library default, at least four periods
+  std::vector<double> newton_per_unit;    ///< of all taxels, or of each; empty: not known
+  std::vector<fingerpad::Point2<double>> places_mm;  ///< of each; empty: a regular array
   fingerpad::PreslipOptions rules;
   bool grasp_lift = true;
   bool grasp_optimise = false;

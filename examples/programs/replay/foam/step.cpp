@@ -35,11 +35,37 @@ double largest_reading(const FoamRecording& recording) {
 std::vector<fingerpad::TaxelFeatures<>> fingers_of(const FoamRecording& recording,
                                                    const std::vector<FoamNoise>& noise) {
   std::vector<fingerpad::TaxelFeatures<>> fingers;
+  fingerpad::TaxelOptions options = recording.sensor.taxels;
+  options.saturated_at = 1e9;  // readings_of() leaves out the saturated ones
   for (std::size_t f = 0; f < noise.size(); ++f) {
     const auto size = recording.finger(0, static_cast<int>(f));
-    fingers.emplace_back(size.rows(), size.cols(), recording.sensor.taxels, noise[f].deviations);
+    std::vector<double> noise_n;
+    std::vector<fingerpad::Point2<double>> places_mm;
+    for (const double deviation : noise[f].deviations) {
+      const auto k = static_cast<fingerpad::Index>(noise_n.size());
+      const std::size_t taxel = recording.taxel_of(static_cast<int>(f), k);
+      noise_n.push_back(deviation * recording.newtons_of(taxel));
+      if (!recording.sensor.places_mm.empty()) {
+        places_mm.push_back(recording.sensor.places_mm[taxel]);
+      }
+    }
+    fingers.emplace_back(size.rows(), size.cols(), options, noise_n, places_mm);
   }
   return fingers;
+}
+
+/// The readings of a finger, in N where newton_per_unit is known; NaN where saturated.
+auto readings_of(const FoamRecording& recording, int sample, int finger) {
+  const auto counts = recording.finger(sample, finger);
+  return fingerpad::LazyView(counts.rows(), counts.cols(),
+                             [&recording, counts, finger](fingerpad::Index i, fingerpad::Index j) {
+                               const std::size_t taxel =
+                                   recording.taxel_of(finger, i * counts.cols() + j);
+                               const double reading = counts(i, j);
+                               return reading < recording.sensor.taxels.saturated_at
+                                          ? reading * recording.newtons_of(taxel)
+                                          : std::nan("");
+                             });
 }
 
 fingerpad::PreslipOptions with(PreslipRule rule, fingerpad::PreslipOptions options) {
@@ -106,9 +132,9 @@ FoamStep::FoamStep(const FoamRecording& recording, const std::vector<FoamNoise>&
 FoamRow FoamStep::operator()(int sample) {
   const auto k = static_cast<std::size_t>(sample);
   FoamRow row{sample, recording_.table.frames[k], recording_.table.times[k], {}, {}};
-  std::vector<fingerpad::StridedView<const double>> readings;
+  std::vector<decltype(readings_of(recording_, sample, 0))> readings;
   for (int f = 0; f < recording_.fingers(); ++f) {
-    readings.push_back(recording_.finger(sample, f));
+    readings.push_back(readings_of(recording_, sample, f));
   }
   const auto start = std::chrono::steady_clock::now();
   const PreslipStatus lift = hand_(readings, recording_.table.times_s[k]);

@@ -13,10 +13,6 @@ namespace {
 
 using fingerpad::TaxelStatus;
 
-constexpr const char* finger_columns[] = {"center_x_mm",   "center_y_mm",     "sum",
-                                          "vibrating_row", "vibrating_col",   "waves",
-                                          "frequency_hz",  "taxels_left_out", "taxel_status"};
-
 }  // namespace
 
 std::string finger_prefix(std::size_t finger, std::size_t fingers) {
@@ -26,8 +22,10 @@ std::string finger_prefix(std::size_t finger, std::size_t fingers) {
 FoamCsv::FoamCsv(const std::filesystem::path& file, const FoamRecording& recording)
     : file_(file), stream_(file), fingers_(recording.sensor.fingers) {
   stream_ << "frame,time_s";
+  const char* const sum = recording.sensor.newton_per_unit.empty() ? "sum" : "force_n";
   for (std::size_t k = 0; k < fingers_.size(); ++k) {
-    for (const char* column : finger_columns) {
+    for (const char* column : {"center_x_mm", "center_y_mm", sum, "vibrating_row", "vibrating_col",
+                               "waves", "frequency_hz", "taxels_left_out", "taxel_status"}) {
       stream_ << ',' << finger_prefix(k, fingers_.size()) << column;
     }
   }
