@@ -25,7 +25,7 @@ inline namespace v0 {
 
 /// One pad. The object is the state: copy it to return to a frame later; copies share the free pad.
 /// A copy with all stages takes 4.3 MB at 640 x 480 pixels and 441 dots, and less time than half a
-/// frame (docs/whole_chain.md). Use one object a thread. A frame allocates nothing, throws nothing,
+/// frame (docs/results.md). Use one object a thread. A frame allocates nothing, throws nothing,
 /// and takes bounded time, O(rows cols) for the image and O(dots) for the rest.
 class Fingertip {
  public:
