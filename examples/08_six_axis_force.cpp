@@ -19,7 +19,7 @@ int main() {
   std::vector<double> rim(membrane.parameters(), 0.0);
   const auto seen = [&] {
     std::vector<fingerpad::Point2<double>> px;
-    membrane.march(rim, false);
+    membrane.march(rim);
     for (int k = 0; k < 150; ++k) {
       const auto place = membrane.place(1 + k % 7, 2.4 * k);
       px.push_back(pixel_of(camera, membrane.at(place)));

@@ -98,14 +98,13 @@ class Wrench {
       : camera_(camera),
         options_((require(options), options)),
         free_(options.cap),
-        annulus_(options.cap,
-                 {.reach_mm = options.reach_share * options.cap.base_radius_mm,
-                  .offset_harmonics = options.loose_rim ? 5 : -1}) {
+        annulus_(options.cap, march_of(options, false)),
+        tangent_(options.cap, march_of(options, true)) {
     require(camera);
-    const std::size_t n = annulus_.parameters(), width = annulus_.width();
+    const std::size_t n = annulus_.parameters(), width = tangent_.width();
     const auto count = static_cast<Eigen::Index>(n);
     parameters_.assign(n, 0.0);
-    centre_ = parameters_;
+    centre_ = at_slopes_ = before_ = parameters_;
     for (std::size_t k = 0; k + 1 < n; ++k) {
       const bool offset = k >= 3 * annulus_.terms();
       const auto harmonic = static_cast<double>((k % annulus_.terms() + 1) / 2);
@@ -113,14 +112,15 @@ class Wrench {
       weight_.push_back(1 / square(offset ? 0.3 : 0.3 / std::pow((std::max)(1.0, harmonic), 1.5)));
     }
     weight_.push_back(0);
-    normal_.resize(count, count);
+    normal_.resize(count, static_cast<Eigen::Index>(width));
     solver_ = Eigen::LLT<Eigen::MatrixXd>(count);
     gradient_.resize(count);
-    slopes_.resize(2 * options.max_marks, count);
+    rhs_.resize(count);
+    slopes_.resize(2 * options.max_marks, static_cast<Eigen::Index>(width));
     residuals_.resize(2 * options.max_marks);
+    weights_.setOnes(2 * options.max_marks);
     of_position_.resize(3 * width);
-    of_load_.resize(6 * width);
-    transposed_.resize(count, 6);
+    of_load_.resize(static_cast<Eigen::Index>(width), 6);
     places_ = detail::ReservedVector<Seen>(static_cast<std::size_t>(options.max_marks));
   }
 
@@ -165,7 +165,9 @@ class Wrench {
     for (const Mark& mark : marks) {
       if (static_cast<Index>(places_.size()) < options_.max_marks && mark.arc_mm > 0 &&
           mark.arc_mm < reach_mm() && is_plausible(mark.px) && mark.sd_px > 0) {
-        places_.push_back({annulus_.place(mark.arc_mm, mark.azimuth_rad), mark});
+        auto place = annulus_.place(mark.arc_mm, mark.azimuth_rad);
+        places_.push_back({place, place, mark});
+        tangent_.shift(places_.back().of_slopes, mark.arc_mm);
       }
     }
     result.marks = static_cast<Index>(places_.size());
@@ -176,9 +178,9 @@ class Wrench {
     parameters_.back() = load;
     weight_.back() = 1 / square((std::max)(options_.pressure_sd_share, 1e-6) * load);
     if (!fit()) {
-      parameters_ = centre_;
+      restart();
       if (!fit()) {
-        parameters_ = centre_;
+        restart();
         result.status = WrenchStatus::not_solved;
         return result;
       }
@@ -191,9 +193,22 @@ class Wrench {
 
  private:
   struct Seen {
-    Annulus<double>::Place place;
+    Annulus<double>::Place place, of_slopes;
     Mark mark;
   };
+
+  /// Steps of the slopes may be long: they are off by some per cent, and a fit's end is not.
+  static AnnulusOptions march_of(const WrenchOptions& o, bool slopes) {
+    return {.reach_mm = o.reach_share * o.cap.base_radius_mm,
+            .steps = slopes ? 3 : 6,
+            .offset_harmonics = o.loose_rim ? 5 : -1,
+            .slopes = slopes};
+  }
+
+  void restart() {
+    parameters_ = centre_;
+    has_slopes_ = false;
+  }
 
   using FreeRadii = std::array<double, 81>;  // on the plate, over the arc
 
@@ -223,8 +238,8 @@ class Wrench {
     centre_[0] = rim->stretch * std::cos(rim->slope_rad);
     centre_[2 * annulus_.terms()] = rim->stretch * std::sin(rim->slope_rad);
     centre_.back() = load;
-    parameters_ = centre_;
-    annulus_.march(centre_, false);
+    restart();
+    annulus_.march(centre_);
     for (std::size_t k = 0; k < free_radius_mm_.size(); ++k) {
       const auto px = pixel_of(camera_, annulus_.at(annulus_.place(arc_at(k), 0)));
       const auto seen = point_at(camera_, px.y, px.x, 0.0);
@@ -233,28 +248,35 @@ class Wrench {
     return true;
   }
 
-  /// Gauss and Newton's method with Huber's weights. The slopes are renewed while steps are large.
+  /// Gauss and Newton's method with Huber's weights. The slopes, of the last frame at first, are
+  /// kept until the parameters are far from theirs, or the steps do not halve.
   bool fit() {
     double step = 1;
-    bool with_slopes = true;
+    bool is_stale = !has_slopes_;
     for (int iteration = 0; iteration < 16; ++iteration) {
-      annulus_.march(parameters_, with_slopes);
-      look(with_slopes);
-      solve(with_slopes);
-      double largest = gradient_.head(gradient_.size() - 1).cwiseAbs().maxCoeff();
+      if (is_stale) {
+        tangent_.march(parameters_);
+        at_slopes_ = parameters_;
+        has_slopes_ = true;
+      }
+      annulus_.march(parameters_);
+      const bool is_anew = is_stale || iteration == 0;
+      look(is_anew);
+      const double off = solve(is_anew);
+      double largest = gradient_.head(gradient_.size() - 1).cwiseAbs().maxCoeff(), far = 0;
       if (!(largest < 100)) {
         return false;
       }
       const double scale = (std::min)(1.0, 0.1 / (std::max)(largest, 1e-9));
       for (std::size_t k = 0; k < parameters_.size(); ++k) {
         parameters_[k] += scale * gradient_[static_cast<Eigen::Index>(k)];
+        far = (std::max)(far, std::fabs(parameters_[k] - at_slopes_[k]));
       }
       largest *= scale;
-      if (largest < 3e-5) {
-        solve(true);  // with the weights of these residuals
+      if (off < 0.03 * 0.03) {
         return true;
       }
-      with_slopes = largest > 0.004 || largest > step / 2;
+      is_stale = far > 0.01 || largest > step / 2;
       step = largest;
     }
     return step < 1e-3;
@@ -263,7 +285,6 @@ class Wrench {
   /// Residuals of all marks over their sd, and their slopes.
   void look(bool with_slopes) {
     misfit_ = 0;
-    const auto count = static_cast<Eigen::Index>(annulus_.parameters());
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Seen& seen = places_[i];
       const Point3<double> at = annulus_.at(seen.place);
@@ -283,14 +304,14 @@ class Wrench {
       }
       if (with_slopes) {
         constexpr double h = 1e-4;  // mm: pixel_of is smooth
-        annulus_.slopes_at(seen.place, of_position_);
+        tangent_.slopes_at(seen.of_slopes, of_position_);
         slopes_.middleRows(row, 2).setZero();
         for (int axis = 0; axis < 3; ++axis) {
           Point3<double> moved = at;
           (axis == 0 ? moved.x : axis == 1 ? moved.y : moved.z) += h;
           const Point2<double> change = (pixel_of(camera_, moved) - px) / (h * seen.mark.sd_px);
           const Eigen::Map<const Eigen::RowVectorXd> slope(
-              &of_position_[static_cast<std::size_t>(axis) * annulus_.width()], count);
+              &of_position_[static_cast<std::size_t>(axis) * tangent_.width()], slopes_.cols());
           slopes_.row(row) += change.x * slope;
           slopes_.row(row + 1) += change.y * slope;
         }
@@ -298,22 +319,22 @@ class Wrench {
     }
   }
 
-  double weight_of(Eigen::Index row) const {
-    return (std::min)(options_.outlier_sd / std::fabs(residuals_[row]), 1.0);
-  }
-
-  /// gradient_ becomes the step. `anew`: the normal equations are those at hand, else the last.
-  void solve(bool anew) {
+  /// gradient_ becomes the step. The normal equations are kept while slopes and weights are.
+  /// The square of the step in standard deviations.
+  double solve(bool anew) {
+    const auto rows = static_cast<Eigen::Index>(2 * places_.size());
+    gradient_.setZero();
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const double weight = (std::min)(options_.outlier_sd / std::fabs(residuals_[row]), 1.0);
+      anew = anew || std::fabs(weight - weights_[row]) > 0.05;
+      weights_[row] = weight;
+      gradient_ += weight * residuals_[row] * slopes_.row(row).head(gradient_.size()).transpose();
+    }
     if (anew) {
       normal_.setZero();
-    }
-    gradient_.setZero();
-    for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
-      const double weight = weight_of(row);
-      if (anew) {
-        normal_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_.row(row).transpose(), weight);
+      for (Eigen::Index row = 0; row < rows; row += 2) {
+        add_to_normal(row);
       }
-      gradient_ += weight * residuals_[row] * slopes_.row(row).transpose();
     }
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
@@ -321,83 +342,111 @@ class Wrench {
       gradient_[i] += weight_[k] * (centre_[k] - parameters_[k]);
     }
     if (anew) {
-      solver_.compute(normal_);
+      solver_.compute(normal_.leftCols(gradient_.size()));
     }
+    rhs_ = gradient_;
     solver_.solveInPlace(gradient_);
+    return rhs_.dot(gradient_);
+  }
+
+  /// The two rows of a mark, to the lower triangle.
+  void add_to_normal(Eigen::Index row) {
+    constexpr Eigen::Index lanes = 2;
+    const double *x = &slopes_(row, 0), *y = &slopes_(row + 1, 0);
+    const double of_x = weights_[row], of_y = weights_[row + 1];
+    for (Eigen::Index i = 0; i < gradient_.size(); ++i) {
+      const double a = of_x * x[i], b = of_y * y[i];
+      double* to = &normal_(i, 0);
+      for (Eigen::Index j = 0; j <= i; j += lanes) {
+        double group[lanes];
+        for (Eigen::Index l = 0; l < lanes; ++l) {
+          group[l] = to[j + l] + a * x[j + l] + b * y[j + l];
+        }
+        std::copy(group, group + lanes, to + j);
+      }
+    }
   }
 
   /// Residuals less the parameters that they determine, at least 1.
   double freedom() {
     auto count = static_cast<double>(2 * places_.size()) - static_cast<double>(weight_.size());
     for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
-      gradient_.setZero();
-      gradient_[k] = 1;
-      solver_.matrixL().solveInPlace(gradient_);
-      count += weight_[static_cast<std::size_t>(k)] * gradient_.squaredNorm();
+      rhs_.setZero();
+      rhs_[k] = 1;
+      solver_.matrixL().solveInPlace(rhs_);
+      count += weight_[static_cast<std::size_t>(k)] * rhs_.squaredNorm();
     }
     return (std::max)(count, 1.0);
   }
 
+  using Axes = Eigen::Matrix<double, 6, 1>;
+
   void read_load(WrenchResult& result) {
-    const double modulus = options_.modulus_n_per_mm;
-    const auto load = annulus_.load_at_rim();
-    result.force_n = modulus * load.force;
-    result.moment_n_mm = modulus * load.moment;
-    annulus_.slopes_of_load(of_load_);
-    const auto count = static_cast<Eigen::Index>(annulus_.parameters());
-    using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
-    const Eigen::Map<const Rows, 0, Eigen::OuterStride<>> slope(
-        of_load_.data(), 6, count,
-        Eigen::OuterStride<>(static_cast<Eigen::Index>(annulus_.width())));
-    transposed_ = slope.transpose();
+    tangent_.slopes_of_load({of_load_.data(), static_cast<std::size_t>(of_load_.size())});
+    const double modulus = options_.modulus_n_per_mm, less = 0.005;
+    const Axes axes = axes_after_step(modulus);
+    result.force_n = {axes[0], axes[1], axes[2]};
+    result.moment_n_mm = {axes[3], axes[4], axes[5]};
+    Axes by_modulus = Axes::Zero();
+    if (options_.modulus_sd_share > 0) {
+      fit_to_modulus(less);
+      by_modulus =
+          (axes - axes_after_step(modulus * (1 - less))) * (options_.modulus_sd_share / less);
+    }
     for (Eigen::Index k = 0; k < 6; ++k) {  // one by one, because a block allocates
-      auto column = transposed_.col(k);
+      auto column = of_load_.col(k).head(gradient_.size());
       solver_.matrixL().solveInPlace(column);
     }
-    result.covariance = transposed_.transpose().lazyProduct(transposed_);
+    const auto share = of_load_.topRows(gradient_.size());
+    result.covariance = share.transpose().lazyProduct(share);
     result.covariance *= square(modulus * result.misfit);
-    Eigen::Matrix<double, 6, 1> by_modulus(result.force_n.x, result.force_n.y, result.force_n.z,
-                                           result.moment_n_mm.x, result.moment_n_mm.y,
-                                           result.moment_n_mm.z);
-    turn_to_modulus();
-    by_modulus += modulus * slope.lazyProduct(gradient_);
-    result.covariance += square(options_.modulus_sd_share) * by_modulus * by_modulus.transpose();
+    result.covariance += by_modulus * by_modulus.transpose();
   }
 
-  /// gradient_ becomes the change of the parameters with ln(mu t): of the load, of the places that
-  /// the free picture gave, and by the fit to both.
-  void turn_to_modulus() {
-    const auto last = gradient_.size() - 1;
-    const double load = parameters_.back();
-    gradient_.setZero();
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const Mark& mark = places_[i].mark;
-      const double h = 0.01;
-      const auto nearest = static_cast<std::size_t>(mark.arc_mm / arc_at(1) + 0.5);
-      const double arc = (std::clamp)(mark.arc_mm - h * arc_by_load_mm_[nearest], 0.0, reach_mm());
-      const auto seen = pixel_of(camera_, annulus_.at(annulus_.place(arc, mark.azimuth_rad)));
-      const auto row = static_cast<Eigen::Index>(2 * i);
-      for (Eigen::Index k = row; k < row + 2; ++k) {
-        const double off = k == row ? seen.x - mark.px.x : seen.y - mark.px.y;
-        const double change = (off / mark.sd_px + residuals_[k]) / h - load * slopes_(k, last);
-        gradient_ -= weight_of(k) * change * slopes_.row(k).transpose();
+  /// Force and moment at the end of the last step.
+  Axes axes_after_step(double modulus) const {
+    const auto load = annulus_.load_at_rim();
+    const Axes before(load.force.x, load.force.y, load.force.z, load.moment.x, load.moment.y,
+                      load.moment.z);
+    const auto slope = of_load_.topRows(gradient_.size()).transpose();
+    return modulus * (before + slope.lazyProduct(gradient_));
+  }
+
+  /// Two steps more, to the load and the places in the free picture of a membrane whose modulus is
+  /// less by a share.
+  void fit_to_modulus(double less) {
+    const double given = centre_.back();
+    before_ = parameters_;
+    centre_.back() /= 1 - less;
+    parameters_.back() /= 1 - less;
+    for (Seen& seen : places_) {
+      const double arc = seen.mark.arc_mm;
+      const double change = less * arc_by_load_mm_[static_cast<std::size_t>(arc / arc_at(1) + 0.5)];
+      annulus_.shift(seen.place, (std::clamp)(arc + change, 0.0, reach_mm()));
+    }
+    for (int step = 0; step < 2; ++step) {
+      annulus_.march(parameters_);
+      look(false);
+      solve(false);
+      for (std::size_t k = 0; k < parameters_.size(); ++k) {
+        parameters_[k] += gradient_[static_cast<Eigen::Index>(k)];
       }
     }
-    solver_.solveInPlace(gradient_);
-    gradient_[last] -= load;
+    parameters_ = before_;
+    centre_.back() = given;
   }
 
   CameraType camera_;
   WrenchOptions options_;
   FreePad<double> free_;
-  Annulus<double> annulus_;
-  bool begun_ = false;
-  std::vector<double> parameters_, centre_, weight_, of_position_, of_load_;
+  Annulus<double> annulus_, tangent_;  // the membrane; its slopes at at_slopes_
+  bool begun_ = false, has_slopes_ = false;
+  std::vector<double> parameters_, at_slopes_, centre_, weight_, before_, of_position_;
   FreeRadii free_radius_mm_ = {}, arc_by_load_mm_ = {};  // the latter with ln of the load
   detail::ReservedVector<Seen> places_;
-  Eigen::MatrixXd normal_, transposed_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes_;
-  Eigen::VectorXd gradient_, residuals_;
+  Eigen::MatrixXd of_load_;  // by parameters
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> normal_, slopes_;
+  Eigen::VectorXd gradient_, rhs_, residuals_, weights_;
   Eigen::LLT<Eigen::MatrixXd> solver_;
   double misfit_ = 0;  // sum of squares
 };

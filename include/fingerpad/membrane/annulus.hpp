@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
@@ -28,9 +29,10 @@ inline namespace v0 {
 struct AnnulusOptions {
   double reach_mm = 10;        ///< stress-free arc from the rim, > 0
   Index azimuths = 24;         ///< meridians, in [12, 360]
-  Index steps = 5;             ///< of Runge and Kutta's method, in [1, 100]
+  Index steps = 6;             ///< of Runge and Kutta's method, in [1, 100]
   Index harmonics = 5;         ///< of the derivative at the rim, in [1, 30]
   Index offset_harmonics = 5;  ///< of the offset of the rim, in [-1, 30]; -1: none
+  bool slopes = true;          ///< the derivatives by the parameters are marched, too
 };
 
 inline std::string check(const AnnulusOptions& o) {
@@ -51,38 +53,25 @@ class Annulus {
 
  public:
   Annulus(const StressFreeCap<S>& cap, const AnnulusOptions& options)
-      : cap_(cap), options_(options) {
-    require(cap);
-    require(options);
+      : cap_(cap), options_((require(cap), require(options), options)) {
     n_ = static_cast<std::size_t>(options.azimuths);
     terms_ = static_cast<std::size_t>(2 * options.harmonics + 1);
     offset_terms_ = static_cast<std::size_t>(std::max<Index>(2 * options.offset_harmonics + 1, 0));
-    width_ = (parameters() + lanes - 1) / lanes * lanes;
+    value_ = options.slopes ? parameters() : 0;
+    width_ = options.slopes ? value_ / lanes * lanes + lanes : 1;
     steps_ = static_cast<std::size_t>(options.steps);
     step_mm_ = S(options.reach_mm) / S(options.steps);
-    const std::size_t nodes = steps_ + 1;
-    x_.resize(nodes, Points(n_));
-    along_.resize(nodes, Points(n_));
-    dx_.resize(nodes, Columns(n_ * 3 * width_, S(0)));
-    dalong_.resize(nodes, Columns(n_ * 3 * width_, S(0)));
-    scratch_.resize(3 * width_);
-    y_.resize(n_);
+    const Field zero(n_ * 3 * width_, S(0));
+    x_.assign(steps_ + 1, zero);
+    along_ = x_;
+    y_ = around_ = hoop_ = x_at_ = y_at_ = x_sum_ = y_sum_ = y_rate_ = zero;
+    rim_around_ = rim_pull_ = zero;
     across_.resize(n_);
-    for (auto* p :
-         {&rim_around_, &rim_pull_, &around_, &hoop_, &x_at_, &y_at_, &x_sum_, &y_sum_, &y_rate_}) {
-      p->resize(n_);
-    }
-    for (auto* c : {&drim_around_, &drim_pull_, &dy_, &daround_, &dhoop_, &dx_at_, &dy_at_,
-                    &dx_sum_, &dy_sum_, &dy_rate_}) {
-      c->resize(n_ * 3 * width_);
-    }
     using std::cos;
     using std::sin;
     for (std::size_t j = 0; j < n_; ++j) {
       const S phi =
           S(2 * std::numbers::pi) * S(static_cast<double>(j)) / S(static_cast<double>(n_));
-      cosine_.push_back(cos(phi));
-      sine_.push_back(sin(phi));
       std::vector<S> basis = {S(1)};
       for (Index m = 1; m <= (std::max)(options.harmonics, options.offset_harmonics); ++m) {
         basis.push_back(cos(S(static_cast<double>(m)) * phi));
@@ -97,52 +86,31 @@ class Annulus {
   const StressFreeCap<S>& cap() const { return cap_; }
   const AnnulusOptions& options() const { return options_; }
 
-  /// Marches inward. `with_slopes`: derivatives by the parameters as well. O(azimuths x steps),
-  /// with slopes times the number of parameters.
-  void march(const std::vector<S>& parameters, bool with_slopes) {
-    load_ = parameters[this->parameters() - 1];
-    slopes_ = with_slopes;
+  /// Marches inward. O(azimuths x steps), with slopes times the number of parameters.
+  void march(const std::vector<S>& parameters) {
     begin(parameters);
     S arc = S(0);
     for (std::size_t k = 0; k < steps_; ++k) {
       const S h = step_mm_;
-      rates(x_[k], y_, dx_[k], dy_, arc, along_[k], dalong_[k]);
-      x_sum_ = along_[k];
+      Field* along = &along_[k];
+      rates(x_[k], y_, arc, *along);
+      x_sum_ = *along;
       y_sum_ = y_rate_;
-      if (slopes_) {
-        dx_sum_ = dalong_[k];
-        dy_sum_ = dy_rate_;
-      }
-      Points* along = &along_[k];
-      Columns* dalong = &dalong_[k];
       for (int stage = 1; stage < 4; ++stage) {
         const S ahead = stage == 3 ? h : h / S(2);
         move(x_[k], *along, ahead, x_at_);
         move(y_, y_rate_, ahead, y_at_);
-        if (slopes_) {
-          move(dx_[k], *dalong, ahead, dx_at_);
-          move(dy_, dy_rate_, ahead, dy_at_);
-        }
         along = &along_[k + 1];  // free until the next step
-        dalong = &dalong_[k + 1];
-        rates(x_at_, y_at_, dx_at_, dy_at_, arc + ahead, *along, *dalong);
+        rates(x_at_, y_at_, arc + ahead, *along);
         const S weight = S(stage == 3 ? 1 : 2);
         move(x_sum_, *along, weight, x_sum_);
         move(y_sum_, y_rate_, weight, y_sum_);
-        if (slopes_) {
-          move(dx_sum_, *dalong, weight, dx_sum_);
-          move(dy_sum_, dy_rate_, weight, dy_sum_);
-        }
       }
       move(x_[k], x_sum_, h / S(6), x_[k + 1]);
       move(y_, y_sum_, h / S(6), y_);
-      if (slopes_) {
-        move(dx_[k], dx_sum_, h / S(6), dx_[k + 1]);
-        move(dy_, dy_sum_, h / S(6), dy_);
-      }
       arc = arc + h;
     }
-    rates(x_[steps_], y_, dx_[steps_], dy_, arc, along_[steps_], dalong_[steps_]);
+    rates(x_[steps_], y_, arc, along_[steps_]);
   }
 
   /// Weights of the nodes and meridians around a place of the membrane.
@@ -156,22 +124,16 @@ class Annulus {
   /// The place `arc_mm` from the rim, in [0, reach], at an azimuth.
   Place place(const S& arc_mm, const S& azimuth_rad) const {
     Place at;
-    const double along = static_cast<double>(value(arc_mm / step_mm_));
-    at.step = static_cast<std::size_t>(
-        (std::min)((std::max)(along, 0.0), static_cast<double>(steps_) - 1e-9));
-    const S u = arc_mm / step_mm_ - S(static_cast<double>(at.step)), v = S(1) - u;
-    at.in_arc = {(S(1) + S(2) * u) * v * v, u * v * v * step_mm_, u * u * (S(3) - S(2) * u),
-                 -(u * u * v * step_mm_)};
+    shift(at, arc_mm);
     const S turn = azimuth_rad * S(static_cast<double>(n_)) / S(2 * std::numbers::pi);
     const double whole = std::floor(static_cast<double>(value(turn)));
     const S w = turn - S(whole);
     const auto n = static_cast<long>(n_);
+    constexpr double products[4] = {5040, -720, 240, -144};  // products of differences
     for (int i = 0; i < 8; ++i) {
-      S weight = S(1);
+      S weight = S(1) / S(i < 4 ? -products[i] : products[7 - i]);
       for (int l = 0; l < 8; ++l) {
-        if (l != i) {
-          weight = weight * (w - S(l - 3)) / S(i - l);
-        }
+        weight = l != i ? S(weight * (w - S(l - 3))) : weight;
       }
       at.around[static_cast<std::size_t>(i)] = weight;
       at.meridian[static_cast<std::size_t>(i)] =
@@ -179,33 +141,41 @@ class Annulus {
     }
     return at;
   }
+  /// The same meridian at another arc.
+  void shift(Place& at, const S& arc_mm) const {
+    const double along = static_cast<double>(value(arc_mm / step_mm_));
+    at.step = static_cast<std::size_t>(
+        (std::min)((std::max)(along, 0.0), static_cast<double>(steps_) - 1e-9));
+    const S u = arc_mm / step_mm_ - S(static_cast<double>(at.step)), v = S(1) - u;
+    at.in_arc = {(S(1) + S(2) * u) * v * v, u * v * v * step_mm_, u * u * (S(3) - S(2) * u),
+                 -(u * u * v * step_mm_)};
+  }
 
   /// Position, mm.
   Point3<S> at(const Place& p) const {
     Point3<S> sum = {S(0), S(0), S(0)};
     for (std::size_t i = 0; i < 8; ++i) {
       const std::size_t j = p.meridian[i];
-      sum += p.around[i] * (p.in_arc[0] * x_[p.step][j] + p.in_arc[1] * along_[p.step][j] +
-                            p.in_arc[2] * x_[p.step + 1][j] + p.in_arc[3] * along_[p.step + 1][j]);
+      sum += p.around[i] * (p.in_arc[0] * column(x_[p.step], j, value_) +
+                            p.in_arc[1] * column(along_[p.step], j, value_) +
+                            p.in_arc[2] * column(x_[p.step + 1], j, value_) +
+                            p.in_arc[3] * column(along_[p.step + 1], j, value_));
     }
     return sum;
   }
 
-  /// Derivatives of the position by the parameters: 3 rows of width() numbers.
+  /// Derivatives of the position by the parameters: 3 rows of width() numbers, the last ones of
+  /// which mean nothing.
   void slopes_at(const Place& p, std::vector<S>& rows) const {
     std::fill(rows.begin(), rows.end(), S(0));
     for (std::size_t i = 0; i < 8; ++i) {
       const std::size_t from = p.meridian[i] * 3 * width_;
-      const S* all[4] = {&dx_[p.step][from], &dalong_[p.step][from], &dx_[p.step + 1][from],
-                         &dalong_[p.step + 1][from]};
-      const S w[4] = {p.around[i] * p.in_arc[0], p.around[i] * p.in_arc[1],
-                      p.around[i] * p.in_arc[2], p.around[i] * p.in_arc[3]};
-      for (std::size_t c = 0; c < 3 * width_; c += lanes) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          rows[c + l] += w[0] * all[0][c + l] + w[1] * all[1][c + l] + w[2] * all[2][c + l] +
-                         w[3] * all[3][c + l];
-        }
-      }
+      const S *a = &x_[p.step][from], *b = &along_[p.step][from], *c = &x_[p.step + 1][from],
+              *d = &along_[p.step + 1][from], *sum = rows.data();
+      const S v = p.around[i] * p.in_arc[0], w = p.around[i] * p.in_arc[1],
+              x = p.around[i] * p.in_arc[2], y = p.around[i] * p.in_arc[3];
+      each(3 * width_, rows.data(),
+           [=](std::size_t k) { return sum[k] + v * a[k] + w * b[k] + x * c[k] + y * d[k]; });
     }
   }
   std::size_t width() const { return width_; }
@@ -219,7 +189,8 @@ class Annulus {
   Load load_at_rim() const {
     Load sum = {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
     for (std::size_t j = 0; j < n_; ++j) {
-      const Point3<S>&x = x_[0][j], &b = rim_around_[j], &y = rim_pull_[j];
+      const Point3<S> x = column(x_[0], j, value_), b = column(rim_around_, j, value_),
+                      y = column(rim_pull_, j, value_);
       sum.force += y - (load_ / S(2)) * cross(x, b);
       sum.moment += cross(x, y) + (load_ / S(2) * dot(x, x)) * b;
     }
@@ -227,87 +198,80 @@ class Annulus {
     return {share * sum.force, share * sum.moment};
   }
   /// Their derivatives by the parameters: 6 rows of width() numbers.
-  void slopes_of_load(std::vector<S>& rows) const {
+  void slopes_of_load(std::span<S> rows) const {
     std::fill(rows.begin(), rows.end(), S(0));
     const S share = S(2 * std::numbers::pi) / S(static_cast<double>(n_));
-    const auto part = [&](const Columns& from, std::size_t j, std::size_t c) {
-      const S* all = &from[j * 3 * width_];
-      return Point3<S>{all[c], all[width_ + c], all[2 * width_ + c]};
-    };
     for (std::size_t j = 0; j < n_; ++j) {
-      const Point3<S>&x = x_[0][j], &b = rim_around_[j], &y = rim_pull_[j];
-      for (std::size_t c = 0; c + 1 < parameters(); ++c) {
-        const Point3<S> dx = part(dx_[0], j, c), db = part(drim_around_, j, c),
-                        dy = part(drim_pull_, j, c);
-        const Point3<S> force = dy - (load_ / S(2)) * (cross(dx, b) + cross(x, db));
-        const Point3<S> moment = cross(dx, y) + cross(x, dy) + (load_ * dot(x, dx)) * b +
-                                 (load_ / S(2) * dot(x, x)) * db;
-        add(rows, c, share, force, moment);
+      const Point3<S> x = column(x_[0], j, value_), b = column(rim_around_, j, value_),
+                      y = column(rim_pull_, j, value_);
+      for (std::size_t c = 0; c < value_; ++c) {
+        const bool is_load = c + 1 == value_;
+        const Point3<S> dx = column(x_[0], j, c), db = column(rim_around_, j, c),
+                        dy = column(rim_pull_, j, c);
+        const Point3<S> force = is_load ? Point3<S>(S(-0.5) * cross(x, b))
+                                        : dy - (load_ / S(2)) * (cross(dx, b) + cross(x, db));
+        const Point3<S> moment = is_load ? Point3<S>((S(0.5) * dot(x, x)) * b)
+                                         : cross(dx, y) + cross(x, dy) + (load_ * dot(x, dx)) * b +
+                                               (load_ / S(2) * dot(x, x)) * db;
+        const S all[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
+        for (std::size_t r = 0; r < 6; ++r) {
+          rows[r * width_ + c] += share * all[r];
+        }
       }
-      add(rows, parameters() - 1, share, S(-0.5) * cross(x, b), (S(0.5) * dot(x, x)) * b);
     }
   }
 
  private:
-  using Points = std::vector<Point3<S>>;
-  using Columns = std::vector<S>;  // of a meridian: x, y, z, each by all parameters
-  static constexpr std::size_t lanes = 8;
+  /// Of each meridian x, y and z, each a row of width() columns: the derivatives by all parameters,
+  /// then the value. Without slopes the value alone.
+  using Field = std::vector<S>;
+  static constexpr std::size_t lanes = 2;
 
-  void add(std::vector<S>& rows,
-           std::size_t column,
-           const S& share,
-           const Point3<S>& force,
-           const Point3<S>& moment) const {
-    const S all[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    for (std::size_t r = 0; r < 6; ++r) {
-      rows[r * width_ + column] += share * all[r];
-    }
+  Point3<S> column(const Field& f, std::size_t j, std::size_t c) const {
+    const S* all = &f[j * 3 * width_ + c];
+    return {all[0], all[width_], all[2 * width_]};
   }
-
-  static void move(const Points& from, const Points& rate, const S& by, Points& to) {
-    for (std::size_t j = 0; j < from.size(); ++j) {
-      to[j] = from[j] + by * rate[j];
-    }
+  void put(Field& f, std::size_t j, std::size_t c, const Point3<S>& p) const {
+    S* all = &f[j * 3 * width_ + c];
+    all[0] = p.x;
+    all[width_] = p.y;
+    all[2 * width_] = p.z;
   }
-  static void move(const Columns& from, const Columns& rate, const S& by, Columns& to) {
-    for (std::size_t c = 0; c < from.size(); c += lanes) {
+  /// to[k] = of(k), in groups that fit vector registers.
+  template <class Of>
+  static void each(std::size_t count, S* to, const Of& of) {
+    std::size_t c = 0;
+    for (; c + lanes <= count; c += lanes) {
+      S group[lanes];
       for (std::size_t l = 0; l < lanes; ++l) {
-        to[c + l] = from[c + l] + by * rate[c + l];
+        group[l] = of(c + l);
+      }
+      for (std::size_t l = 0; l < lanes; ++l) {
+        to[c + l] = group[l];
       }
     }
+    for (; c < count; ++c) {
+      to[c] = of(c);
+    }
+  }
+  static void move(const Field& from, const Field& rate, const S& by, Field& to) {
+    const S *a = from.data(), *b = rate.data(), h = by;
+    each(from.size(), to.data(), [=](std::size_t k) { return a[k] + h * b[k]; });
   }
 
   /// Derivative by the azimuth, from four neighbours on both sides.
-  static constexpr std::array<double, 4> stencil = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
-  S per_step(std::size_t s) const {
-    return S(stencil[s]) * S(static_cast<double>(n_)) / S(2 * std::numbers::pi);
-  }
-  void change_around(const Points& f, Points& to) const {
-    for (std::size_t j = 0; j < n_; ++j) {
-      Point3<S> sum = {S(0), S(0), S(0)};
-      for (std::size_t s = 0; s < 4; ++s) {
-        sum += per_step(s) * (f[(j + s + 1) % n_] - f[(j + n_ - s - 1) % n_]);
-      }
-      to[j] = sum;
-    }
-  }
-  void change_around(const Columns& f, Columns& to) const {
+  void change_around(const Field& f, Field& to) const {
     const std::size_t size = 3 * width_;
-    const S w[4] = {per_step(0), per_step(1), per_step(2), per_step(3)};
+    const S unit = S(static_cast<double>(n_)) / S(2 * std::numbers::pi);
+    const S w0 = unit * S(4.0 / 5), w1 = unit * S(-1.0 / 5), w2 = unit * S(4.0 / 105),
+            w3 = unit * S(-1.0 / 280);
     for (std::size_t j = 0; j < n_; ++j) {
-      const S *up[4], *down[4];
-      for (std::size_t s = 0; s < 4; ++s) {
-        up[s] = &f[(j + s + 1) % n_ * size];
-        down[s] = &f[(j + n_ - s - 1) % n_ * size];
-      }
-      S* out = &to[j * size];
-      for (std::size_t c = 0; c < size; c += lanes) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          out[c + l] =
-              w[0] * (up[0][c + l] - down[0][c + l]) + w[1] * (up[1][c + l] - down[1][c + l]) +
-              w[2] * (up[2][c + l] - down[2][c + l]) + w[3] * (up[3][c + l] - down[3][c + l]);
-        }
-      }
+      const auto near = [&](std::size_t by) { return &f[(j + by) % n_ * size]; };
+      const S *a = near(1), *b = near(2), *c = near(3), *d = near(4);
+      const S *e = near(n_ - 1), *g = near(n_ - 2), *h = near(n_ - 3), *i = near(n_ - 4);
+      each(size, &to[j * size], [=](std::size_t k) {
+        return w0 * (a[k] - e[k]) + w1 * (b[k] - g[k]) + w2 * (c[k] - h[k]) + w3 * (d[k] - i[k]);
+      });
     }
   }
 
@@ -317,137 +281,105 @@ class Annulus {
                const detail::membrane::Matrix3<S>& other,
                const S* b,
                S* out) const {
+    const std::size_t w = width_;
     for (std::size_t r = 0; r < 3; ++r) {
-      const S p[6] = {one[r][0], one[r][1], one[r][2], other[r][0], other[r][1], other[r][2]};
-      for (std::size_t c = 0; c < width_; c += lanes) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const std::size_t i = c + l;
-          out[r * width_ + i] = p[0] * a[i] + p[1] * a[width_ + i] + p[2] * a[2 * width_ + i] +
-                                p[3] * b[i] + p[4] * b[width_ + i] + p[5] * b[2 * width_ + i];
-        }
-      }
+      const S p = one[r][0], q = one[r][1], s = one[r][2], t = other[r][0], u = other[r][1],
+              v = other[r][2];
+      each(w, out + r * w, [=](std::size_t k) {
+        return p * a[k] + q * a[w + k] + s * a[2 * w + k] + t * b[k] + u * b[w + k] +
+               v * b[2 * w + k];
+      });
     }
   }
 
   /// The circle where the march begins.
   void begin(const std::vector<S>& q) {
-    using std::sqrt;
-    const S rho = cap_.rho_mm(S(0)), radius = cap_.base_radius_mm;
-    Points& d = along_[0];
-    Columns& slope = dalong_[0];
+    load_ = q[parameters() - 1];
+    const S rho = cap_.rho_mm(S(0)), m = cap_.mooney_share;
+    std::fill(along_[0].begin(), along_[0].end(), S(0));
     for (std::size_t j = 0; j < n_; ++j) {
+      const std::vector<S>& basis = basis_[j];
       const auto sum = [&](std::size_t from, std::size_t count) {
         S s = S(0);
-        for (std::size_t m = 0; m < count; ++m) {
-          s = s + q[from + m] * basis_[j][m];
+        for (std::size_t k = 0; k < count; ++k) {
+          s = s + q[from + k] * basis[k];
         }
         return s;
       };
-      const Point3<S> out = {cosine_[j], sine_[j], S(0)}, tangent = {-sine_[j], cosine_[j], S(0)};
-      const S inward = sum(0, terms_), around = sum(terms_, terms_), up = sum(2 * terms_, terms_);
-      d[j] = around * tangent - inward * out + Point3<S>{S(0), S(0), up};
-      const Point3<S> outward = cross(tangent, d[j]);
-      const S length = norm(outward);
-      const Point3<S> normal = outward / length;
-      const S offset = sum(3 * terms_, offset_terms_);
-      x_[0][j] = radius * out + offset * normal;
-      if (!slopes_) {
-        continue;
-      }
+      const Point3<S> out = {basis[1], basis[2], S(0)}, tangent = {-basis[2], basis[1], S(0)};
       const Point3<S> parts[3] = {-out, tangent, {S(0), S(0), S(1)}};
-      const auto put = [&](Columns& to, std::size_t c, const Point3<S>& p) {
-        S* all = &to[j * 3 * width_];
-        all[c] = p.x;
-        all[width_ + c] = p.y;
-        all[2 * width_ + c] = p.z;
-      };
-      for (std::size_t part = 0; part < 3; ++part) {
+      const Point3<S> d = sum(0, terms_) * parts[0] + sum(terms_, terms_) * parts[1] +
+                          sum(2 * terms_, terms_) * parts[2];
+      const Point3<S> outward = cross(tangent, d);
+      const S length = norm(outward), offset = sum(3 * terms_, offset_terms_);
+      const Point3<S> normal = outward / length;
+      for (std::size_t part = 0; options_.slopes && part < 3; ++part) {
         const Point3<S> turned = cross(tangent, parts[part]);
         const Point3<S> tilt = (offset / length) * (turned - dot(turned, normal) * normal);
-        for (std::size_t m = 0; m < terms_; ++m) {
-          put(slope, part * terms_ + m, basis_[j][m] * parts[part]);
-          put(dx_[0], part * terms_ + m, basis_[j][m] * tilt);
+        for (std::size_t k = 0; k < terms_; ++k) {
+          put(along_[0], j, part * terms_ + k, basis[k] * parts[part]);
+          put(x_[0], j, part * terms_ + k, basis[k] * tilt);
         }
       }
-      for (std::size_t m = 0; m < offset_terms_; ++m) {
-        put(slope, 3 * terms_ + m, {S(0), S(0), S(0)});
-        put(dx_[0], 3 * terms_ + m, basis_[j][m] * normal);
+      for (std::size_t k = 0; options_.slopes && k < offset_terms_; ++k) {
+        put(x_[0], j, 3 * terms_ + k, basis[k] * normal);
       }
+      put(x_[0], j, value_, cap_.base_radius_mm * out + offset * normal);
+      put(along_[0], j, value_, d);
     }
     change_around(x_[0], around_);
-    if (slopes_) {
-      change_around(dx_[0], daround_);
-    }
     for (std::size_t j = 0; j < n_; ++j) {
-      const Point3<S> b = around_[j] / rho;
-      y_[j] = rho * rubber_pull(d[j], b, cap_.mooney_share);
-      across_[j] = norm(d[j]);
-      if (slopes_) {
-        auto by = detail::membrane::pull_slopes(d[j], b, cap_.mooney_share);
-        for (std::size_t r = 0; r < 3; ++r) {
-          for (std::size_t c = 0; c < 3; ++c) {
-            by.by_along[r][c] = rho * by.by_along[r][c];
-          }
+      const Point3<S> b = column(around_, j, value_) / rho, d = column(along_[0], j, value_);
+      if (options_.slopes) {
+        auto by = detail::membrane::pull_slopes(d, b, m);
+        for (auto& row : by.by_along) {
+          row = {rho * row[0], rho * row[1], rho * row[2]};
         }
         const std::size_t from = j * 3 * width_;
-        combine(by.by_along, &slope[from], by.by_other, &daround_[from], &dy_[from]);
+        combine(by.by_along, &along_[0][from], by.by_other, &around_[from], &y_[from]);
       }
+      put(y_, j, value_, rho * rubber_pull(d, b, m));
+      across_[j] = norm(d);
     }
     rim_around_ = around_;
     rim_pull_ = y_;
-    if (slopes_) {
-      drim_around_ = daround_;
-      drim_pull_ = dy_;
-    }
   }
 
   /// Rates by the arc: `along` of x, y_rate_ of y = rho_0 A.
-  void rates(const Points& x,
-             const Points& y,
-             const Columns& dx,
-             const Columns& dy,
-             const S& arc,
-             Points& along,
-             Columns& dalong) {
-    const S rho = cap_.rho_mm(arc), m = cap_.mooney_share, inverse = S(1) / rho;
+  void rates(const Field& x, const Field& y, const S& arc, Field& along) {
+    const S m = cap_.mooney_share, inverse = S(1) / cap_.rho_mm(arc), load = load_;
     change_around(x, around_);
-    if (slopes_) {
-      change_around(dx, daround_);
-    }
     for (std::size_t j = 0; j < n_; ++j) {
-      const Point3<S> b = inverse * around_[j];
-      along[j] = detail::membrane::stretch_of_pull(Point3<S>(inverse * y[j]), b, m, across_[j]);
-      hoop_[j] = rubber_pull(b, along[j], m);
-      if (slopes_) {
-        slopes_of_rates(j, along[j], b, inverse, dy, dalong);
+      const Point3<S> b = inverse * column(around_, j, value_);
+      const Point3<S> pull = inverse * column(y, j, value_);
+      const Point3<S> t = detail::membrane::stretch_of_pull(pull, b, m, across_[j]);
+      if (options_.slopes) {
+        slopes_of_rates(j, t, b, inverse, y, along);
       }
+      put(along, j, value_, t);
+      put(hoop_, j, value_, rubber_pull(b, t, m));
     }
     change_around(hoop_, y_rate_);
-    if (slopes_) {
-      change_around(dhoop_, dy_rate_);
-    }
+    const std::size_t w = width_;
     for (std::size_t j = 0; j < n_; ++j) {
-      y_rate_[j] = -(y_rate_[j] + load_ * cross(around_[j], along[j]));
-      if (slopes_) {
-        const Point3<S>&p = around_[j], &t = along[j];
-        const detail::membrane::Matrix3<S> by_t = {{{S(0), load_ * p.z, -(load_ * p.y)},
-                                                    {-(load_ * p.z), S(0), load_ * p.x},
-                                                    {load_ * p.y, -(load_ * p.x), S(0)}}};
-        const detail::membrane::Matrix3<S> by_p = {{{S(0), -(load_ * t.z), load_ * t.y},
-                                                    {load_ * t.z, S(0), -(load_ * t.x)},
-                                                    {-(load_ * t.y), load_ * t.x, S(0)}}};
-        const std::size_t from = j * 3 * width_;
-        combine(by_t, &dalong[from], by_p, &daround_[from], &scratch_[0]);
-        S* out = &dy_rate_[from];
-        for (std::size_t c = 0; c < 3 * width_; c += lanes) {
-          for (std::size_t l = 0; l < lanes; ++l) {
-            out[c + l] = scratch_[c + l] - out[c + l];
-          }
-        }
-        const Point3<S> by_load = cross(t, p);
-        out[parameters() - 1] += by_load.x;
-        out[width_ + parameters() - 1] += by_load.y;
-        out[2 * width_ + parameters() - 1] += by_load.z;
+      const Point3<S> p = column(around_, j, value_), t = column(along, j, value_);
+      const Point3<S> turned = load * cross(p, t);
+      const S at[3] = {p.x, p.y, p.z}, way[3] = {t.x, t.y, t.z};
+      const S *a = &around_[j * 3 * w], *d = &along[j * 3 * w];
+      S* out = &y_rate_[j * 3 * w];
+      for (std::size_t r = 0; r < 3; ++r) {  // both factors of the product change
+        const std::size_t n = (r + 1) % 3, l = (r + 2) % 3;
+        const S* row = out + r * w;
+        const S tl = load * way[l], tn = load * way[n], pl = load * at[l], pn = load * at[n];
+        each(w, out + r * w, [=](std::size_t k) {
+          return tn * a[l * w + k] - tl * a[n * w + k] + pl * d[n * w + k] - pn * d[l * w + k] -
+                 row[k];
+        });
+      }
+      put(y_rate_, j, value_, column(y_rate_, j, value_) + turned);  // not twice
+      if (options_.slopes) {
+        const std::size_t by_load = value_ - 1;
+        put(y_rate_, j, by_load, column(y_rate_, j, by_load) - cross(p, t));
       }
     }
   }
@@ -456,8 +388,8 @@ class Annulus {
                        const Point3<S>& along,
                        const Point3<S>& b,
                        const S& inverse,
-                       const Columns& dy,
-                       Columns& dalong) {
+                       const Field& y,
+                       Field& along_of_x) {
     using detail::membrane::Matrix3;
     const S m = cap_.mooney_share;
     const auto across = detail::membrane::pull_slopes(along, b, m);
@@ -486,8 +418,8 @@ class Annulus {
       }
     }
     const std::size_t from = j * 3 * width_;
-    combine(by_y, &dy[from], by_around, &daround_[from], &dalong[from]);
-    combine(hoop_by_y, &dy[from], hoop_by_around, &daround_[from], &dhoop_[from]);
+    combine(by_y, &y[from], by_around, &around_[from], &along_of_x[from]);
+    combine(hoop_by_y, &y[from], hoop_by_around, &around_[from], &hoop_[from]);
   }
 
   static detail::membrane::Matrix3<S> inverse_of(const detail::membrane::Matrix3<S>& a) {
@@ -502,17 +434,12 @@ class Annulus {
 
   StressFreeCap<S> cap_;
   AnnulusOptions options_;
-  std::size_t n_ = 0, terms_ = 0, offset_terms_ = 0, width_ = 0, steps_ = 0;
+  std::size_t n_ = 0, terms_ = 0, offset_terms_ = 0, value_ = 0, width_ = 0, steps_ = 0;
   S step_mm_ = S(0), load_ = S(0);
-  bool slopes_ = false;
-  std::vector<S> cosine_, sine_, across_;
+  std::vector<S> across_;
   std::vector<std::vector<S>> basis_;
-  std::vector<Points> x_, along_;     // at each circle
-  std::vector<Columns> dx_, dalong_;  // their derivatives by the parameters
-  Points y_, around_, hoop_, x_at_, y_at_, x_sum_, y_sum_, y_rate_, rim_around_, rim_pull_;
-  Columns dy_, daround_, dhoop_, dx_at_, dy_at_, dx_sum_, dy_sum_, dy_rate_, drim_around_,
-      drim_pull_;
-  Columns scratch_;
+  std::vector<Field> x_, along_;  // at each circle
+  Field y_, around_, hoop_, x_at_, y_at_, x_sum_, y_sum_, y_rate_, rim_around_, rim_pull_;
 };
 
 }  // namespace v0
