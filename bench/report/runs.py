@@ -45,7 +45,7 @@ class Row:
         return self.name.startswith(("streaming", "cv::"))
 
     def main_error(self):
-        """First error on finite-element scenes, which follow no law of a method, else the first."""
+        """First error on finite-element scenes, whose truth no method makes, else the first."""
         on_scenes = [(q, e) for q, e in self.errors.items() if is_on_scenes(q)]
         return next(iter(on_scenes or self.errors.items()), (None, None))
 
