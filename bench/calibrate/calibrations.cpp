@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Calibrations: time of a fit ("ns/pixel" is per fit).
-// "a sensor of numbers": the calibrations that replay_many repeats
-// (examples/programs/replay_many/trials.cpp), from newly drawn measurements. Error: of each
+// "a sensor of numbers": the calibrations of a simulated sensor
+// (bench/trials/calibrations/trials.cpp), from newly drawn measurements. Error: of each
 // parameter, relative to the true one, over 100 fits with fresh noise.
 // "... on scenes": curves and maps from contacts of finite-element membranes
 // (tests/data/contacts.csv). Error: of the method, on a scene that the fit does not use. Published
@@ -21,7 +21,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "examples/programs/replay_many/trials.hpp"
+#include "bench/trials/calibrations/trials.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/force/look_up.hpp"
@@ -43,13 +43,13 @@ std::span<const ForceSample<double>> span_of(const Samples& samples) {
 
 void add_trial(const std::string& name) {
   const bench::Memory memory;
-  const auto trial = std::make_shared<replay_many::Trial>(replay_many::trial_of(name));
-  const auto chance = std::make_shared<replay_many::Chance>(1);
+  const auto trial = std::make_shared<trials::Trial>(trials::trial_of(name));
+  const auto chance = std::make_shared<trials::Chance>(1);
   bench::add(
       "a sensor of numbers/" + name, 1, memory.bytes(),
       [=] { benchmark::DoNotOptimize(trial->bootstrap(*chance)); },
       [=](auto& counters) {
-        replay_many::Chance fresh(2);
+        trials::Chance fresh(2);
         std::vector<double> errors;
         for (int k = 0; k < 100; ++k) {
           const auto found = trial->monte_carlo(fresh).values;
@@ -205,7 +205,7 @@ void add_moment(const std::string& name,
 
 int main(int argc, char** argv) {
   (void)test::contact_records({});  // read the file now: its memory does not belong to a fit
-  for (const std::string& name : replay_many::trial_names()) {
+  for (const std::string& name : trials::trial_names()) {
     add_trial(name);
   }
   add_references();

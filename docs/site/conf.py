@@ -4,7 +4,7 @@
 project = "fingerpad"
 copyright = "2026 The fingerpad authors"
 extensions = ["myst_parser", "breathe"]
-include_patterns = ["index.md", "docs/*.md", "docs/*/*.md", "examples/data/README.md",
+include_patterns = ["index.md", "docs/*.md", "docs/*/*.md", "examples/README.md", "examples/data/README.md",
                     "tests/data/README.md", "reference/**"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["dollarmath"]

@@ -199,8 +199,10 @@ def main(root, source, xml):
     trees.insert(0, toctree("First hour", sorted(f"docs/first_hour/{p.stem}"
                                                  for p in (root / "docs/first_hour").glob("*.md"))))
     general = sorted(f"docs/{p.stem}" for p in (root / "docs").glob("*.md"))
-    trees.insert(0, toctree("Start", ["docs/install", *(g for g in general if g != "docs/install"),
-                                      "examples/data/README", "tests/data/README"]))
+    project = ["docs/CONTRIBUTING", "docs/CHANGELOG", "docs/SECURITY", "tests/data/README"]
+    first = ["docs/install", "docs/your_sensor", "examples/README", "examples/data/README", "docs/results", "docs/faq"]
+    trees.insert(0, toctree("Start", first + [g for g in general if g not in first + project]))
+    trees.append(toctree("Project", project))
     # README is the first page; its links and pictures are those of the folder that it is in.
     (source / "index.md").write_text((root / "README.md").read_text() + "\n" + "\n".join(trees))
 

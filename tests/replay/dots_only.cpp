@@ -295,7 +295,6 @@ TEST_CASE("the stick ratio of a dots-only recording") {
   CHECK(states["1"] == 60);
   CHECK(states["0"] == 20);
   CHECK(fs::exists(recording.out() / "pictures" / "stick_000007.png"));
-  CHECK(fs::exists(recording.out() / "pictures" / "stick_ratio.png"));
   CHECK_FALSE(fs::exists(recording.out() / "depth"));
   CHECK_FALSE(fs::exists(recording.out() / "pictures" / "depth_000007.png"));
   // It accepts its own files as output again.

@@ -777,17 +777,8 @@ TEST_CASE("a part of a foam recording") {
   }
 }
 
-TEST_CASE("pictures of foam recordings") {
-  const auto check = [](const Workplace& work) {
-    REQUIRE(work.complaint(true) == "");
-    for (const char* name : {"array.png", "frequency.png", "preslip.png"}) {
-      INFO(name);
-      const cv::Mat picture = cv::imread((work.out() / "pictures" / name).string());
-      REQUIRE_FALSE(picture.empty());
-      CHECK(picture.cols > 300);
-      CHECK(cv::norm(picture, cv::Mat(picture.size(), CV_8UC3, cv::Scalar::all(255))) > 0);
-    }
-  };
+TEST_CASE("foam recordings with little in them, and with gaps") {
+  const auto check = [](const Workplace& work) { CHECK(work.complaint(true) == ""); };
   SECTION("with an alarm, twice in the same place") {
     const Workplace work(taxels_of(rows, cols, samples, creeping));
     check(work);

@@ -137,7 +137,6 @@ TEST_CASE("a gel on which a ball slides: contact, slide and slip") {
   CHECK(recording.first_slip() >= 6);
   CHECK(recording.first_slip() <= 7);
   CHECK(recording.column("slide_status").back() == "no contact");
-  CHECK(fs::exists(recording.out() / "pictures" / "slide.png") == pictures);
   CHECK(fs::exists(recording.out() / "pictures" / "slide_000009.png") == pictures);
   if (pictures) {  // its own files are accepted as output again
     recording.run();
@@ -155,7 +154,7 @@ TEST_CASE("a gel that holds a ball, and one that nothing touches") {
   untouched.drag({{0, 0}, {0, 0}, {0, 0}});
   untouched.run(true);
   CHECK(untouched.column("contact_area_px") == std::vector<std::string>(3, "0"));
-  CHECK(fs::exists(untouched.out() / "pictures" / "slide.png"));
+  CHECK(fs::exists(untouched.out() / "pictures" / "slide_000000.png"));
 }
 
 TEST_CASE("gel contact for dots of any size") {

@@ -291,25 +291,6 @@ class Test:
         for difference in differences(self.one, out):
             self.expect(False, f"kills of {kind}: {difference}")
 
-    def resampled(self):
-        one, other = self.work / "resampled", self.work / "resampled_by_others"
-        how = [str(self.program), "--calibrations", "moment,normal_force", "--resamples", "600"]
-        ranks = [self.mpirun, "-n", "2", "--oversubscribe", "--allow-run-as-root"]
-        for out, before in ((one, []), (other, ranks if self.mpirun else [])):
-            done = subprocess.run([*before, *how, "--out", str(out)], capture_output=True, text=True)
-            self.expect(done.returncode == 0, done.stderr)
-        for difference in differences(one, other):
-            self.expect(False, f"resampled: {difference}")
-        with open(one / "covariance.csv", newline="") as file:
-            rows = [row for row in csv.DictReader(file) if row["row"] == row["column"]]
-        self.expect(len(rows) == 4, f"{len(rows)} parameters")
-        for row in rows:
-            for kind in ("bootstrap", "monte_carlo"):
-                # 40 contacts determine the analytic one to 11 %; the others use other contacts.
-                ratio = (float(row[kind]) / float(row["analytic"])) ** 0.5
-                self.expect(abs(ratio - 1) < 0.5, f"{kind} of {row['row']}: {ratio}")
-        print("resampled: the same bytes", flush=True)
-
     def full_disk(self):
         """A file system of 300 KiB, if the user may mount one."""
         out = self.work / "full"
@@ -373,7 +354,6 @@ def main():
         if arguments.mpirun:
             for kind in ("unit", "rank", "all") if few else ("unit", "leader", "rank", "all"):
                 test.killed_at_random(3, kind, 1.5)
-        test.resampled()
         test.gone()
         test.full_disk()
         print("good" if test.failures == 0 else f"{test.failures} failures")

@@ -109,10 +109,24 @@ accuracy 1 0.7 0.7
 grep -q "^frames  *3$" "$work/table" || fail "the printed table: $(cat "$work/table")"
 grep -Eq "^mean error   0\.[0-9]+ N normal, 0\.0[0-9] N tangential, 0\.[0-9]+ N mm moment" \
   "$work/table" || fail "the printed errors of the look-up: $(cat "$work/table")"
-for file in frames.csv pictures/{montage,stick_ratio,forces,wrench}.png \
+for file in frames.csv pictures/montage.png \
             pictures/{depth,side,stick,traction}_000006.png; do
   [[ -s $work/out/$file ]] || fail "$file is missing"
 done
+if /usr/bin/python3 -c 'import matplotlib' 2>/dev/null; then
+  root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+  "$replay" "$root/examples/data/foam" --out "$work/foam" >/dev/null || fail "replay of a foam array"
+  for of in out:press foam:foam; do
+    /usr/bin/python3 -B "$root/examples/programs/plot.py" "$work/${of%:*}" \
+      "$root/examples/data/${of#*:}" || fail "plot.py ${of#*:}"
+  done
+  for file in out/pictures/{motion,stick_ratio,forces,wrench}.png foam/pictures/{preslip,array}.png; do
+    [[ -s $work/$file ]] || fail "plot.py does not draw $file"
+  done
+  # A folder with charts is still one of replay's.
+  "$replay" "$recording" --out "$work/out" --frames 4:7 --no-pictures >/dev/null ||
+    fail "a folder with charts"
+fi
 [[ ! -e $work/out/depth ]] || fail "the depth maps of the earlier run are still there"
 
 # Interrupted while it writes: nothing half-written.

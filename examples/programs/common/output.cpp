@@ -24,12 +24,12 @@ const char* stick_cell(DotState state) {
   return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
 }
 
-/// Whether the program itself writes a file of this path, relative to the output folder.
+/// Whether replay or plot.py writes a file of this path, relative to the output folder.
 bool is_ours(const std::string& relative) {
   static const std::regex ours(
       R"(frames\.csv|dots\.csv|slide\.csv|depth|depth/\d{6}\.tiff|contact|contact/\d{6}\.png|pictures|)"
       R"(pictures/(depth|side|contact|stick|traction|slide|live)_\d{6}\.png|)"
-      R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|frequency|preslip|slide)\.png)");
+      R"(pictures/(montage|motion|stick_ratio|forces|wrench|array|preslip|slide)\.png)");
   return std::regex_match(relative, ours);
 }
 

@@ -6,11 +6,7 @@
 #include <utility>
 
 #include "common/images.hpp"
-#include "replay/pictures/force_chart.hpp"
-#include "replay/pictures/motion_chart.hpp"
 #include "replay/pictures/picture_parts.hpp"
-#include "replay/pictures/stick_chart.hpp"
-#include "replay/pictures/wrench_chart.hpp"
 
 namespace replay {
 namespace {
@@ -38,8 +34,6 @@ Writer::Writer(const Recording& recording,
 }
 
 void Writer::operator()(Scene scene) {
-  with_force_ = with_force_ || (scene.has_curves && scene.touch.contact.ok());
-  with_rim_ = with_rim_ || scene.has_rim;
   rows_.push_back(scene);
   table_.write(rows_.back());
   if (dots_) {
@@ -82,22 +76,10 @@ void Writer::write_pictures(const Scene& scene) {
 }
 
 void Writer::finish() {
-  if (options_.pictures) {
+  if (options_.pictures && painter_) {
     const std::string name = std::filesystem::canonical(options_.recording).filename().string();
     const std::string title = name + ": " + std::to_string(rows_.size()) + " frames";
-    if (painter_) {
-      write_picture(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
-      write_picture(output_.file("pictures", "motion.png"), motion_chart(title, rows_));
-      if (with_force_) {
-        write_picture(output_.file("pictures", "forces.png"), force_chart(title, rows_));
-      }
-      if (with_rim_) {
-        write_picture(output_.file("pictures", "wrench.png"), wrench_chart(title, rows_));
-      }
-    }
-    if (dots_) {
-      write_picture(output_.file("pictures", "stick_ratio.png"), stick_chart(title, rows_));
-    }
+    write_picture(output_.file("pictures", "montage.png"), painter_->montage(title, columns_));
   }
   table_.close();
   if (dots_) {

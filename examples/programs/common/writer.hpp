@@ -45,8 +45,6 @@ class Writer {
   double brightest_;
   DotGrid initial_dots_;
   int total_;
-  bool with_force_ = false;
-  bool with_rim_ = false;
   OutputFolder output_;
   FramesCsv table_;
   std::optional<DotsCsv> dots_;

@@ -208,8 +208,10 @@ void print_summary(const Chain& chain,
   }
   if (options.pictures) {
     std::printf("pictures     %s; start with %s\n", (writer.place() / "pictures").c_str(),
-                dots_only ? "slide.png" : "montage.png");
+                dots_only ? numbered("slide_", writer.rows().front().frame, ".png").c_str()
+                          : "montage.png");
   }
+  std::printf("charts       plot.py %s\n", writer.place().c_str());
 }
 
 }  // namespace
@@ -259,7 +261,7 @@ int run(const Options& options) {
   Writer writer(recording, options, chain.dots().initial(), total);
   std::optional<GelReplay> gel;  // only for a dots-only recording
   if (recording.sensor.dots_only) {
-    gel.emplace(recording, options, chain.dots(), writer.output(), total);
+    gel.emplace(recording, options, chain.dots(), writer.output());
   }
   recording.frames.seek(range.first);
   DamagedFrames damaged;

@@ -19,8 +19,8 @@ namespace {
 /// Progress on standard error: one changing line in a terminal, otherwise a line at intervals.
 class Progress {
  public:
-  Progress(const Crew& crew, std::string noun)
-      : noun_(std::move(noun)), workers_(crew.jobs()), in_terminal_(::isatty(STDERR_FILENO) == 1) {}
+  explicit Progress(const Crew& crew)
+      : workers_(crew.jobs()), in_terminal_(::isatty(STDERR_FILENO) == 1) {}
   ~Progress() {
     if (in_terminal_) {
       std::fputs("\r\033[K", stderr);
@@ -53,13 +53,12 @@ class Progress {
     shown_ = now;
     const double rate = size_ended_ / spent.count();
     std::fprintf(stderr,
-                 "%s%d of %d %s done, %d failed, %.3g per minute on %d processes, %.0f s left%s",
-                 in_terminal_ ? "\r\033[K" : "", units_ended_, units_, noun_.c_str(), failed_,
+                 "%s%d of %d recordings done, %d failed, %.3g per minute on %d processes, %.0f s left%s",
+                 in_terminal_ ? "\r\033[K" : "", units_ended_, units_, failed_,
                  60 * units_ended_ / spent.count(), workers_,
                  rate > 0 ? (size_ - size_ended_) / rate : 0, in_terminal_ ? "" : "\n");
   }
 
-  std::string noun_;
   int workers_;
   bool in_terminal_;
   int units_ = 0, units_ended_ = 0, failed_ = 0;
@@ -69,7 +68,7 @@ class Progress {
 
 class Work {
  public:
-  Work(Crew& crew, const Job& job) : crew_(crew), job_(job), progress_(crew, job.noun) {}
+  Work(Crew& crew, const Job& job) : crew_(crew), job_(job), progress_(crew) {}
 
   void add(Unit unit) {
     progress_.add(unit);

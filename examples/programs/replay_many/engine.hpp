@@ -20,7 +20,6 @@ struct Job {
   /// Whether the leader sees the input that a unit did not see; then the unit's machine is at
   /// fault. Throws replay::Failure if all of the input is gone.
   std::function<bool(const Unit& unit)> is_there;
-  std::string noun = "recordings";
 };
 
 /// Number of tries of a unit whose process dies.

@@ -21,19 +21,14 @@
 #include "common/images.hpp"
 #include "overview.hpp"
 #include "recordings.hpp"
-#include "resampling.hpp"
 
 namespace {
 
 using replay_many::Crew;
 using replay_many::Path;
 
-using Names = std::vector<std::string>;
-
 struct Arguments {
   Path recordings, out;
-  Names calibrations;  ///< to resample, instead of recordings
-  int resamples = 10000;
   replay_many::Settings settings;
   int jobs = 0;  ///< 0: one per core, or one per rank
   bool retry = false;
@@ -71,25 +66,7 @@ bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_m
   }
 }
 
-int lead_resampling(Crew& crew, const Arguments& arguments) {
-  const auto names = arguments.calibrations == Names{"all"} ? Names() : arguments.calibrations;
-  const replay_many::Resampling resampling(arguments.out, names, arguments.resamples);
-  replay_many::make_folders(arguments.out);
-  lock(arguments.out);
-  expects_same(arguments.out / "options.txt",
-               std::to_string(arguments.resamples) + " resamples of each calibration");
-  if (!worked_off(crew, resampling.left(), resampling.job())) {
-    return 3;
-  }
-  resampling.write_covariance();
-  std::printf("covariance   %s\n", (arguments.out / "covariance.csv").c_str());
-  return 0;
-}
-
 int lead(Crew& crew, const Arguments& arguments) {
-  if (!arguments.calibrations.empty()) {
-    return lead_resampling(crew, arguments);
-  }
   replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.settings);
   replay_many::make_folders(arguments.out);
   lock(arguments.out);
@@ -148,8 +125,7 @@ int main(int argc, char** argv) {
       "failure in failed/NAME.txt, and for all together summary.csv, all_frames.csv and\n"
       "overview.html.");
   Arguments arguments;
-  const auto recordings =
-      app.add_option("RECORDINGS", arguments.recordings, "folder with the recordings");
+  app.add_option("RECORDINGS", arguments.recordings, "folder with the recordings")->required();
   app.add_option("--out", arguments.out, "output folder")->option_text("DIR")->required();
   app.add_option("--jobs", arguments.jobs,
                  "number of processes; default: one per core, or one per rank")
@@ -163,24 +139,12 @@ int main(int argc, char** argv) {
   app.add_flag("--raw", arguments.settings.replay.raw, "as for replay");
   app.add_flag_callback(
       "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as for replay");
-  app.add_option("--calibrations", arguments.calibrations,
-                 "instead of RECORDINGS: bootstrap and Monte Carlo of these calibrations of a "
-                 "virtual sensor, or of all; DIR receives covariance.csv")
-      ->option_text("NAME,...")
-      ->delimiter(',')
-      ->excludes(recordings);
-  app.add_option("--resamples", arguments.resamples, "number of resamples of each calibration")
-      ->check(CLI::Range(10, 1000000))
-      ->capture_default_str();
   app.add_flag("--retry", arguments.retry, "process failed recordings again");
   app.footer(
       "Exit status: 0 all done, 1 some failed, 2 wrong arguments, 3 stopped: the output cannot be\n"
       "written, or the recordings are missing.");
   try {
     app.parse(argc, argv);
-    if (arguments.recordings.empty() && arguments.calibrations.empty()) {
-      throw CLI::RequiredError("RECORDINGS or --calibrations");
-    }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

@@ -17,7 +17,6 @@
 #include "fingerpad/core/check.hpp"
 #include "recordings.hpp"
 #include "replay/foam/recording.hpp"
-#include "resampling.hpp"
 
 namespace replay_many {
 namespace {
@@ -52,15 +51,12 @@ constexpr int small_width_px = 360;
 
 /// Writes small.png, a reduced overview picture, for the page of all recordings.
 void write_small_picture(const Path& folder) {
-  for (const char* name : {"montage.png", "slide.png", "preslip.png"}) {
-    const cv::Mat picture = cv::imread((folder / "pictures" / name).string());
-    if (!picture.empty()) {
-      const double scale = small_width_px / static_cast<double>(picture.cols);
-      cv::Mat small;
-      cv::resize(picture, small, cv::Size(), scale, scale, cv::INTER_AREA);
-      replay::write_png(folder / "small.png", small);
-      return;
-    }
+  const cv::Mat picture = cv::imread((folder / "pictures" / "montage.png").string());
+  if (!picture.empty()) {
+    const double scale = small_width_px / static_cast<double>(picture.cols);
+    cv::Mat small;
+    cv::resize(picture, small, cv::Size(), scale, scale, cv::INTER_AREA);
+    replay::write_png(folder / "small.png", small);
   }
 }
 
@@ -144,7 +140,6 @@ bool is_of_output(const std::string& message, const Path& out) {
 
 int run_unit(const std::vector<std::string>& arguments) {
   const bool joins = arguments.at(0) == "join";
-  const bool resamples = arguments.at(0) == "resamples";
   const Path out = arguments.at(joins ? 1 : 2);
   const auto ended = [&](End end, const std::string& why) {
     std::fprintf(stderr, "%s%s\n", why.c_str(), end == End::no_room ? room_in(out).c_str() : "");
@@ -155,10 +150,6 @@ int run_unit(const std::vector<std::string>& arguments) {
   };
   try {
     cv::setNumThreads(1);  // the other cores process other units
-    if (resamples) {
-      do_resamples(arguments);
-      return static_cast<int>(End::done);
-    }
     if (std::error_code error; !joins && !fs::is_directory(arguments.at(1), error)) {
       return ended(End::missing, arguments[1] + ": there is no such folder");
     }

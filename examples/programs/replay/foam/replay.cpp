@@ -9,16 +9,10 @@
 #include <vector>
 
 #include "common/failure.hpp"
-#include "common/images.hpp"
 #include "common/interrupt.hpp"
 #include "common/output.hpp"
 #include "common/progress.hpp"
 #include "fingerpad/core/check.hpp"
-#include "replay/foam/activity.hpp"
-#include "replay/foam/array_picture.hpp"
-#include "replay/foam/axis.hpp"
-#include "replay/foam/chart.hpp"
-#include "replay/foam/frequency_picture.hpp"
 #include "replay/foam/step.hpp"
 #include "replay/foam/table.hpp"
 
@@ -40,24 +34,6 @@ FoamStep make_step(const Options& options,
 std::string alarm_words(const FoamRow& row) {
   const std::string when = row.time_s.empty() ? "" : ", t = " + row.time_s + " s";
   return "frame " + std::to_string(row.frame) + when + ": " + row.alarm.names();
-}
-
-void write_pictures(const OutputFolder& output,
-                    const Options& options,
-                    const FoamRecording& recording,
-                    const std::vector<FoamNoise>& noise,
-                    const std::vector<FoamRow>& rows) {
-  const std::string name = std::filesystem::canonical(options.recording).filename().string();
-  const auto alarm = first_alarm(rows);
-  const std::string title =
-      name + ": " + (alarm ? "first alarm in " + alarm_words(rows[*alarm]) : "no alarm");
-  const auto shown = shown_rows(rows, static_cast<int>(recording.sensor.taxels.window));
-  const FoamActivity activity = activity_of(recording, noise, rows, shown, max_frequency_bins);
-  write_picture(output.file("pictures", "preslip.png"), foam_chart(title, recording, rows));
-  write_picture(output.file("pictures", "array.png"),
-                foam_array_picture(title, recording, rows, shown, activity));
-  write_picture(output.file("pictures", "frequency.png"),
-                foam_frequency_picture(title, recording, rows, activity));
 }
 
 void print_fingers(const FoamRecording& recording, const std::vector<FoamNoise>& noise) {
@@ -101,8 +77,7 @@ std::string touches_of(const std::vector<FoamRow>& rows, std::size_t finger) {
   return touches.empty() ? "never" : touches + (is_pressed ? " on" : "");
 }
 
-void print_summary(const Options& options,
-                   const FoamRecording& recording,
+void print_summary(const FoamRecording& recording,
                    const std::vector<FoamNoise>& noise,
                    const std::vector<FoamRow>& rows,
                    const FoamStep& step,
@@ -136,17 +111,16 @@ void print_summary(const Options& options,
                   return finger.status == TaxelStatus::vibrating;
                 });
               }));
-  const auto alarm = first_alarm(rows);
-  std::printf("first alarm  %s\n", alarm ? alarm_words(rows[*alarm]).c_str() : "none");
-  if (alarm) {
+  const auto alarm =
+      std::find_if(rows.begin(), rows.end(), [](const FoamRow& row) { return row.alarm.any(); });
+  std::printf("first alarm  %s\n", alarm != rows.end() ? alarm_words(*alarm).c_str() : "none");
+  if (alarm != rows.end()) {
     std::printf("alarms       in %td samples\n",
                 count([](const FoamRow& row) { return row.alarm.any(); }));
   }
   std::printf("step         %.2f us per sample (median)\n", step.median_us());
   std::printf("table        %s\n", (place / "frames.csv").c_str());
-  if (options.pictures) {
-    std::printf("pictures     %s; start with preslip.png\n", (place / "pictures").c_str());
-  }
+  std::printf("charts       plot.py %s\n", place.c_str());
 }
 
 }  // namespace
@@ -176,14 +150,11 @@ int run_foam(const Options& options) {
     }
   }
   table.close();
-  if (options.pictures) {
-    write_pictures(output, options, recording, noise, rows);
-  }
   if (is_interrupted()) {
     return 130;
   }
   output.publish();
-  print_summary(options, recording, noise, rows, step, output.place());
+  print_summary(recording, noise, rows, step, output.place());
   return 0;
 }
 

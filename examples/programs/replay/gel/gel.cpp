@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "replay/gel/gel.hpp"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "common/csv_cells.hpp"
@@ -14,7 +13,6 @@
 namespace replay {
 namespace {
 
-constexpr int most_shown = 5;  // frames above the chart
 constexpr const char* columns =
     "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
     "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,area_lost,recoil_pitches,"
@@ -33,15 +31,13 @@ SlideStep step_of(const Options& options, const FreePad& free, const DotSource& 
 GelReplay::GelReplay(Recording& recording,
                      const Options& options,
                      const DotSource& dots,
-                     const OutputFolder& output,
-                     int total)
+                     const OutputFolder& output)
     : options_(options),
       output_(output),
       free_(free_pad_of(recording, dots)),
       step_(step_of(options, free_, dots)),
       file_(output.file("slide.csv")),
-      table_(file_),
-      total_(total) {
+      table_(file_) {
   table_ << columns << '\n';
 }
 
@@ -51,18 +47,18 @@ void GelReplay::operator()(int frame,
                            const DotGrid& dots) {
   GelScene scene{frame, time_s, image, cv::Mat_<uchar>(image.size()), dots, {}};
   scene.seen = step_(image, dots, scene.contact_mask);
-  rows_.push_back({frame, time_s, scene.seen});
-  write_row(rows_.back());
-  if (!options_.pictures) {
-    return;
+  write_row(scene);
+  touching_ += scene.seen.contact.in_contact() ? 1 : 0;
+  if (scene.seen.slide.alarm && !slip_) {
+    slip_ = frame;
   }
-  write_picture(output_.file("pictures", numbered("slide_", frame, ".png")), slide_picture(scene));
-  if (is_chosen(static_cast<int>(rows_.size()) - 1, total_, most_shown)) {
-    shown_.push_back(scene);
+  if (options_.pictures) {
+    write_picture(output_.file("pictures", numbered("slide_", frame, ".png")),
+                  slide_picture(scene));
   }
 }
 
-void GelReplay::write_row(const GelRow& row) {
+void GelReplay::write_row(const GelScene& row) {
   const GelFrame& seen = row.seen;
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
          << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
@@ -78,34 +74,18 @@ void GelReplay::finish() {
   if (!table_) {
     fail(file_, "cannot be written");
   }
-  if (!options_.pictures || shown_.empty()) {
-    return;
-  }
-  const std::string name = std::filesystem::canonical(options_.recording).filename().string();
-  const std::size_t slip = first_slip(rows_);
-  const bool touched = std::any_of(rows_.begin(), rows_.end(),
-                                   [](const GelRow& row) { return row.seen.contact.in_contact(); });
-  const std::string what =
-      slip < rows_.size() ? "slip, first detected in frame " + std::to_string(rows_[slip].frame)
-      : touched           ? "held, no slip"
-                          : "no contact";
-  write_picture(output_.file("pictures", "slide.png"),
-                slide_chart(name + ": " + what, rows_, shown_));
 }
 
 void GelReplay::print_summary() const {
-  const auto touching = std::count_if(
-      rows_.begin(), rows_.end(), [](const GelRow& row) { return row.seen.contact.in_contact(); });
   std::printf("free pad     %zu %s from %s\n", free_.frames.size(),
               free_.frames.size() == 1 ? "frame" : "frames", free_.source.c_str());
   for (const Finding& finding : free_.told) {
     std::printf("%-12s %s: %s. %s\n", finding.is_wrong ? "wrong" : "note", finding.place.c_str(),
                 finding.what.c_str(), finding.remedy.c_str());
   }
-  std::printf("contact      in %td frames\n", touching);
-  const std::size_t slip = first_slip(rows_);
-  if (slip < rows_.size()) {
-    std::printf("slip         first detected in frame %d\n", rows_[slip].frame);
+  std::printf("contact      in %d frames\n", touching_);
+  if (slip_) {
+    std::printf("slip         first detected in frame %d\n", *slip_);
   } else {
     std::printf("slip         none\n");
   }

@@ -17,21 +17,20 @@ namespace replay {
 
 class GelReplay {
  public:
-  /// For `total` frames. Options and output must outlive this object. Throws Failure, as do the
+  /// Options and output must outlive this object. Throws Failure, as do the
   /// functions below.
   GelReplay(Recording& recording,
             const Options& options,
             const DotSource& dots,
-            const OutputFolder& output,
-            int total);
+            const OutputFolder& output);
 
   void operator()(int frame, const std::string& time_s, const cv::Mat& image, const DotGrid& dots);
-  /// Writes the results over all frames.
+  /// Closes the table.
   void finish();
   void print_summary() const;
 
  private:
-  void write_row(const GelRow& row);
+  void write_row(const GelScene& scene);
 
   const Options& options_;
   const OutputFolder& output_;
@@ -39,9 +38,8 @@ class GelReplay {
   SlideStep step_;
   std::filesystem::path file_;
   std::ofstream table_;
-  std::vector<GelRow> rows_;
-  std::vector<GelScene> shown_;
-  int total_;
+  int touching_ = 0;         ///< frames
+  std::optional<int> slip_;  ///< first frame with an alarm
 };
 
 }  // namespace replay

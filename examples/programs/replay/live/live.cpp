@@ -174,7 +174,9 @@ void play_to_folder(const Options& options, Recording& pad, LiveFrames& frames) 
 int run_live(const Options& options, const LiveOptions& live) {
   Recording pad = open_pad(options.recording, options.sensor);
   if (pad.sensor.dots_only) {
-    fail(options.recording, "live pictures need a reference image of the free pad and its depth");
+    fail(options.recording,
+         "has dots only, and live pictures show depth: record a video, write { \"video\": \"FILE\" } "
+         "to sensor.json, and run replay with --out");
   }
   const cv::Size size = pad.reference.size();
   LiveFrames frames =

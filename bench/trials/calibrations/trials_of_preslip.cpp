@@ -4,10 +4,10 @@
 // correlated.
 #include <array>
 
+#include "bench/trials/calibrations/trial_parts.hpp"
 #include "fingerpad/calibrate/foam.hpp"
-#include "trial_parts.hpp"
 
-namespace replay_many {
+namespace trials {
 
 /// Eight lifts by a trembling hand, with three marked slips each.
 Trial preslip() {
@@ -52,4 +52,4 @@ Trial preslip() {
                draw_samples, fit);
 }
 
-}  // namespace replay_many
+}  // namespace trials

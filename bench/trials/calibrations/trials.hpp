@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "chance.hpp"
+#include "bench/trials/calibrations/chance.hpp"
 
-namespace replay_many {
+namespace trials {
 
 /// The parameters that a calibration estimates.
 struct Estimate {
@@ -32,4 +32,4 @@ const std::vector<std::string>& trial_names();
 /// Throws replay::Failure for an unknown name.
 Trial trial_of(const std::string& name);
 
-}  // namespace replay_many
+}  // namespace trials

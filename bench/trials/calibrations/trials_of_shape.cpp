@@ -6,13 +6,13 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
+#include "bench/trials/calibrations/trial_parts.hpp"
 #include "calibrate/geometry.hpp"
 #include "calibrate/shape.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
-#include "trial_parts.hpp"
 
-namespace replay_many {
+namespace trials {
 
 /// A plate of 9 x 9 dots, and the same raised by 10 mm, with 0.05 px of noise.
 Trial camera_plate() {
@@ -100,4 +100,4 @@ Trial intensity() {
   return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);
 }
 
-}  // namespace replay_many
+}  // namespace trials

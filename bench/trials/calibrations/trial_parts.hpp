@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "trials.hpp"
+#include "bench/trials/calibrations/trials.hpp"
 
-namespace replay_many {
+namespace trials {
 
 using Matrix = std::vector<std::vector<double>>;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -68,4 +68,4 @@ Trial cap();
 Trial intensity();
 Trial preslip();
 
-}  // namespace replay_many
+}  // namespace trials

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "trials.hpp"
+#include "bench/trials/calibrations/trials.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "bench/trials/calibrations/trial_parts.hpp"
 #include "common/failure.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
@@ -19,9 +20,8 @@
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
-#include "trial_parts.hpp"
 
-namespace replay_many {
+namespace trials {
 namespace {
 
 using Map = cv::Mat_<double>;
@@ -348,4 +348,4 @@ Trial trial_of(const std::string& name) {
   return trial;
 }
 
-}  // namespace replay_many
+}  // namespace trials

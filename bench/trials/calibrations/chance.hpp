@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace replay_many {
+namespace trials {
 
 class Chance {
  public:
@@ -45,4 +45,4 @@ class Chance {
   std::uint64_t state_;
 };
 
-}  // namespace replay_many
+}  // namespace trials
