@@ -123,7 +123,8 @@ def foam(table, pictures):
     alarms = [f for f, alarm in zip(table["frame"], table["preslip"]) if alarm == 1]
     shown = lambda column: [(f.strip("_"), table[f + column], None, None) for f in fingers]
     chart("Foam fingers: " + (f"first warning in frame {alarms[0]:.0f} (1 below)" if alarms else "no warning"),
-          [("sum", shown("sum")), ("centroid y, mm", shown("center_y_mm")),
+          [("force, N", shown("force_n")) if fingers[0] + "force_n" in table else ("sum", shown("sum")),
+           ("centroid y, mm", shown("center_y_mm")),
            ("vibration, Hz", shown("frequency_hz")), ("warning", [("", table["preslip"], None, None)])],
           table, pictures / "preslip.png")
 
