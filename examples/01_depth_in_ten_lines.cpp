@@ -8,6 +8,7 @@
 
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 
 // Views of the channels, without a copy. OpenCV stores colours as blue, green, red.
 static auto green_of(const cv::Mat& image) {

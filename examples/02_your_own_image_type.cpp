@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 
 // The image type of a camera driver: lines of pixels, each with red and green in a 32-bit word.
 struct PackedFrame {
@@ -46,8 +47,7 @@ PackedFrame photograph(double lid_mm) {
     for (int j = 0; j < cols; ++j) {
       const double depth = depth_of_pad(i, j, lid_mm);
       const auto ray = fingerpad::ray_at_pixel(camera, double(i), double(j));
-      const auto pencil = fingerpad::pencil_of(camera, ray);
-      const auto colour = fingerpad::colour_at_depth(fluid, pencil, 57.0, 0.0163, depth);
+      const auto colour = fingerpad::colour_at_depth(fluid, ray, 57.0, 0.0163, depth);
       if (depth > 0) {
         frame.lines[std::size_t(i)][std::size_t(j)] =
             std::uint32_t(colour.red + 0.5) << 16 | std::uint32_t(colour.green + 0.5) << 8;

@@ -9,6 +9,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #if __has_include(<xtensor/containers/xtensor.hpp>)
 #include <xtensor/containers/xtensor.hpp>
 #else
@@ -29,10 +30,9 @@ int main() {
     return std::sqrt(400 - x * x - y * y) - 7;  // NaN or negative outside
   });
   const auto level = [&](Index i, Index j, auto member) {
-    const auto pencil =
-        fingerpad::pencil_of(camera, fingerpad::ray_at_pixel(camera, double(i), double(j)));
+    const auto ray = fingerpad::ray_at_pixel(camera, double(i), double(j));
     const double depth = (std::max)(0.0, shape(i, j));  // 0 for NaN
-    return std::uint8_t(fingerpad::colour_at_depth(fluid, pencil, 57.0, 0.0163, depth).*member);
+    return std::uint8_t(fingerpad::colour_at_depth(fluid, ray, 57.0, 0.0163, depth).*member);
   };
   using Colour = fingerpad::Colour<double>;
   const fingerpad::LazyView red(rows, cols,

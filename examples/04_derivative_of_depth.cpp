@@ -21,8 +21,7 @@ S depth_of(const S& red, const S& green, const S& c_red, const S& kappa, const S
   fluid.c_red_per_mm = c_red;
   fluid.kappa = kappa;
   const auto ray = fingerpad::ray_at_tangent(camera, S(0.2));
-  const auto pencil = fingerpad::pencil_of(camera, ray);
-  return fingerpad::newton_depth(fluid, pencil, scattering, {red, green}).depth_mm;
+  return fingerpad::newton_depth(fluid, ray, scattering, {red, green}).depth_mm;
 }
 
 }  // namespace

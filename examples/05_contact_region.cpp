@@ -14,6 +14,7 @@
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 
 int main(int argc, char** argv) {
   const std::string recording = argc > 1 ? argv[1] : FINGERPAD_EXAMPLE_RECORDING;

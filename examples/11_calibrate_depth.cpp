@@ -24,7 +24,7 @@ int main() {
       const double row = 239.5 + 15 * (k / 7 - 3), col = 239.5 + 15 * (k % 7 - 3);
       const auto ray = ray_at_pixel(camera, row, col);
       const double depth_mm = lowest_mm + ray.plate_rho_mm * ray.plate_rho_mm / 2 / 15;
-      auto seen = colour_at_depth(truth, pencil_of(camera, ray), light, scattering, depth_mm);
+      auto seen = colour_at_depth(truth, ray, light, scattering, depth_mm);
       seen.red += error(bits);
       seen.green += error(bits);
       samples.push_back(fingerpad::depth_sample(camera, row, col, depth_mm, seen));

@@ -24,6 +24,7 @@
 #include "bench/trials/calibrations/trials.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "support/contact_records.hpp"

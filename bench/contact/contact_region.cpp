@@ -16,6 +16,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "bench/support/scene_contact.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/soap_film.hpp"
 

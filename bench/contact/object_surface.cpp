@@ -16,6 +16,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/contact/surface.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 
 using namespace fingerpad;
 using bench::Image;

@@ -29,7 +29,7 @@ struct Inputs {
   Absorption<S> fluid;
   std::vector<S> red;
   std::vector<S> green;
-  std::vector<Pencil<S>> pencils;
+  std::vector<Ray<S>> pencils;
   std::vector<S> g;
 
   explicit Inputs(const bench::Scene& scene) : fluid(cast<S>(scene.pad.fluid)) {
@@ -41,7 +41,7 @@ struct Inputs {
     const auto camera = cast<S>(scene.pad.camera);
     for (Index i = 0; i < scene.pad.rows; ++i) {
       for (Index j = 0; j < scene.pad.cols; ++j) {
-        pencils.push_back(pencil_of(camera, ray_at_pixel(camera, S(i), S(j))));
+        pencils.push_back(ray_at_pixel(camera, S(i), S(j)));
       }
     }
   }
@@ -54,7 +54,7 @@ struct Planes {
   std::size_t size;
   const S* red;
   const S* green;
-  const Pencil<S>* pencils;
+  const Ray<S>* pencils;
   const S* g;
 
   Planes(const Inputs<S>& in)
@@ -73,8 +73,7 @@ Image<double> exact_depths(const bench::Scene& scene, bool one_height) {
   Image<double> depth(scene.pad.rows, scene.pad.cols);
   for (std::size_t k = 0; k < depth.cells.size(); ++k) {
     auto pencil = in.pencils[k];
-    pencil.height.sagittal_mm =
-        one_height ? pencil.height.meridional_mm : pencil.height.sagittal_mm;
+    pencil.sagittal_mm = one_height ? pencil.meridional_mm : pencil.sagittal_mm;
     const auto root = newton_depth(in.fluid, pencil, in.g[k], in.colour(k));
     depth.cells[k] = static_cast<double>(root.depth_mm);
   }
@@ -167,9 +166,9 @@ struct Bench {
           const published::Fluid<double> fluid{in.fluid.c_red_per_mm, in.fluid.c_green_per_mm,
                                                in.fluid.kappa};
           for (std::size_t k = 0; k < in.size; ++k) {
-            depth[k] = published::bisect(fluid, in.pencils[k].path_factor,
-                                         in.pencils[k].height.meridional_mm, in.g[k], in.red[k],
-                                         in.green[k], in.fluid.max_depth_mm);
+            depth[k] =
+                published::bisect(fluid, in.pencils[k].path_factor, in.pencils[k].meridional_mm,
+                                  in.g[k], in.red[k], in.green[k], in.fluid.max_depth_mm);
           }
         },
         &exact_of_one_height);

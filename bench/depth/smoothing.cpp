@@ -27,7 +27,7 @@ struct Bench {
   bench::Frame<std::uint8_t> planar = scene.pressed_frame<std::uint8_t>();
   bench::Frame<std::uint16_t> deep = scene.pressed_frame<std::uint16_t>();
   bench::Interleaved<std::uint8_t> bgr{planar};
-  std::vector<Pencil<double>> pencils;
+  std::vector<Ray<double>> pencils;
 
   explicit Bench(const bench::Scene& which) : scene(which) {
     for (Index i = 0; i < scene.pad.rows; ++i) {
@@ -77,7 +77,7 @@ struct Bench {
         detail::PadArea{0, 0, scene.pad.rows, scene.pad.cols}, window_px, 1);
     const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
       const GreyScale scale = grey_scale_of<cell_t<Red>>();
-      rows->start(r, g, scale, 0);
+      rows->start(r, g, scale);
       for (Index i = 0; i < r.rows(); ++i) {  // 640 columns are whole blocks of 64
         rows->next(r, g, scale, &smooth.red(i, 0), &smooth.green(i, 0));
       }

@@ -16,6 +16,7 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 
 using namespace fingerpad;
@@ -92,8 +93,7 @@ struct Bench {
     using Map = CurvatureMap<S>;
     const auto from = std::make_shared<Image<S>>(as<S>(depth));
     const bench::Memory memory;
-    const auto map =
-        std::make_shared<Map>(camera, depth.rows(), depth.cols(), CurvatureRing{double(radius_px)});
+    const auto map = std::make_shared<Map>(camera, depth.rows(), depth.cols(), double(radius_px));
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
     if (clamped) {
       add_map(name, camera, clamped, out, memory.bytes(), [=] { (void)(*map)(*from, *out); });

@@ -15,6 +15,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/optics/camera.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/depth.hpp"
 
 using namespace fingerpad;
@@ -51,10 +52,20 @@ Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
           1 + 1 / std::cos(fluid)};
 }
 
+/// Of the pencil that comes back along a ray.
+template <class S>
+struct Heights {
+  S meridional_mm = 0, sagittal_mm = 0;
+
+  Heights() = default;
+  Heights(const Ray<S>& ray) : meridional_mm(ray.meridional_mm), sagittal_mm(ray.sagittal_mm) {}
+  Heights(const S& both) : meridional_mm(both), sagittal_mm(both) {}
+};
+
 double error(const Ray<Long>& a, const Ray<Long>& b) {
   return static_cast<double>(a.path_factor - b.path_factor);
 }
-double error(const PencilHeights<Long>& a, const PencilHeights<Long>& b) {
+double error(const Heights<Long>& a, const Heights<Long>& b) {
   return static_cast<double>((std::max)(std::abs(a.meridional_mm - b.meridional_mm),
                                         std::abs(a.sagittal_mm - b.sagittal_mm)));
 }
@@ -71,8 +82,10 @@ Ray<Long> widened(const Ray<S>& r) {
           Long(r.path_factor)};
 }
 template <class S>
-PencilHeights<Long> widened(const PencilHeights<S>& h) {
-  return {Long(h.meridional_mm), Long(h.sagittal_mm)};
+Heights<Long> widened(const Heights<S>& h) {
+  Heights<Long> out(Long(h.meridional_mm));
+  out.sagittal_mm = Long(h.sagittal_mm);
+  return out;
 }
 template <class S>
 Point3<Long> widened(const Point3<S>& p) {
@@ -119,7 +132,7 @@ struct Calls {
   Calls(const std::string& name, const CameraOf<double>& c) : row(name), camera(cast<S>(c)) {}
 
   auto exact_heights() const {
-    return [e = exact](Long i, Long j, Long) { return pencil_heights(e, ray_at_pixel(e, i, j)); };
+    return [e = exact](Long i, Long j, Long) { return Heights<Long>(ray_at_pixel(e, i, j)); };
   }
   void add_rays() const {
     add<S>(
@@ -128,7 +141,7 @@ struct Calls {
         [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
     add<S>(
         "virtual heights/" + row, "height", "mm",
-        [c = camera](std::size_t, S i, S j, S) { return pencil_heights(c, ray_at_pixel(c, i, j)); },
+        [c = camera](std::size_t, S i, S j, S) { return Heights<S>(ray_at_pixel(c, i, j)); },
         exact_heights());
   }
   void add_published() const {
@@ -137,7 +150,7 @@ struct Calls {
         "virtual heights/SingleHeight, published, " + row, "height", "mm",
         [pinhole](std::size_t, S i, S j, S) {
           const S h2 = published::ray_of(pinhole, i, j).h2_mm;
-          return PencilHeights<S>{h2, h2};
+          return Heights<S>(h2);
         },
         exact_heights());
     add<S>(

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "virtual_pad.hpp"
 
@@ -145,7 +146,7 @@ class VirtualPad {
     // windows and rings as wide on the pad as those by default are at 0.08 mm a pixel
     const double scale = 0.08 / view_.camera.pitch_mm;
     o.smoothing_px = 2 * static_cast<int>(14 * scale) + 1;
-    o.contact.ring.radius_px = 25 * scale;
+    o.contact.ring_px = 25 * scale;
     o.contact.free_apex_mm = membrane_.film.free_top_mm();
     o.free_dots_mm = home_.view();
     o.stick.noise = dot_noise_px * view_.camera.pitch_mm;
@@ -369,7 +370,7 @@ class OwnPictures {
     fingerpad::FingertipOptions o{camera, fluid, std::move(reference)};
     const double scale = 0.08 / pitch;
     o.smoothing_px = 2 * std::clamp(static_cast<int>(14 * scale), 1, 54) + 1;
-    o.contact.ring.radius_px = 25 * scale;
+    o.contact.ring_px = 25 * scale;
     o.contact.free_apex_mm = height_mm;
     fingerpad::Fingertip tip(o);
     const auto touch = tip(channel(pressed_, rows_, cols_, 0), channel(pressed_, rows_, cols_, 1));

@@ -323,7 +323,7 @@ class View {
   struct Pixel {
     Index place;
     Point2<double> start_mm, per_mm;  ///< its ray in the fluid
-    fingerpad::Pencil<double> pencil;
+    fingerpad::Ray<double> ray;
     double scattering, light;           ///< g, and the lamp's share here
     Point2<double> home_mm = start_mm;  ///< of what it sees, on the film
     double depth_mm = 10, lit = 0;      ///< lit: brightness times light; 0: not seen yet
@@ -342,7 +342,7 @@ class View {
           pixels_.push_back({.place = i * size_px + j,
                              .start_mm = {low.x, low.y},
                              .per_mm = {high.x - low.x, high.y - low.y},
-                             .pencil = pencil_of(camera, ray),
+                             .ray = ray,
                              .scattering = scattering * (1 - 0.05 * share * share),
                              .light = 1 - 0.06 * share * share});
         }
@@ -365,7 +365,7 @@ class View {
       }
       pixel.depth_mm = depth;
       pixel.lit = lit;
-      const auto colour = colour_at_depth(fluid, pixel.pencil, lit, pixel.scattering, depth);
+      const auto colour = colour_at_depth(fluid, pixel.ray, lit, pixel.scattering, depth);
       pixel.red = colour.red;
       pixel.green = colour.green;
       pixel.red_sd = std::sqrt(colour.red / brightness);

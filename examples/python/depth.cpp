@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "fingerpad/depth/fit_reference.hpp"
 #include "python/arrays.hpp"
 #include "python/parts.hpp"
 

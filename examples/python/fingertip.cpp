@@ -79,8 +79,8 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const Count& smoothing_px,
                                 const Number& dot_radius_px) {
   Options options{camera, fluid, reference};
-  options.sampling = 1;         // depth at every pixel, because Python reads whole arrays
-  options.flat_area.emplace();  // also without a curve
+  options.sampling = 1;      // depth at every pixel, because Python reads whole arrays
+  options.flat_area = true;  // also without a curve
   const Dots dots(free_dots_mm, "free_dots_mm");
   options.free_dots_mm = dots.view();
   options.contact = contact;

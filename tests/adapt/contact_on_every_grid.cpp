@@ -17,6 +17,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/soap_film.hpp"
@@ -44,7 +45,7 @@ struct Case {
 
   Case()
       : depth(test::depths_of<float>(camera(), test::RoundFilm({}), rows_of_map, cols_of_map)),
-        region(camera(), rows_of_map, cols_of_map, {.ring = {5}}) {
+        region(camera(), rows_of_map, cols_of_map, {.ring_px = 5}) {
     depth(20, 20) = static_cast<float>(test::nan);
     result = region(depth, mask);
     REQUIRE(result.contact_px > 900);

@@ -56,7 +56,7 @@ TEST_CASE("camera and fluid are differentiated in one pass", "[dual]") {
       camera.refractive_index = n;
       Absorption<S> fluid;
       fluid.c_red_per_mm = c;
-      const auto pencil = pencil_of(camera, ray_at_pixel(camera, S(row), S(100)));
+      const auto pencil = ray_at_pixel(camera, S(row), S(100));
       return colour_at_depth(fluid, pencil, S(57), S(0.02), S(7)).red;
     };
     const Gradient both = red(Gradient::parameter(n0, 0), Gradient::parameter(c0, 1));

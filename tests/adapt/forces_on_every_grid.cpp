@@ -28,6 +28,7 @@
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"

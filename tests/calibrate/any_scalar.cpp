@@ -19,6 +19,7 @@
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 
@@ -83,7 +84,7 @@ struct IntensityByBall {
       return 150 * std::exp(-depth / 3);
     });
     const IntensityFit<S> fit =
-        fit_intensity<S>(free, std::array{pressed}, {S(4) * p, S(0.1)}, 1, {.smoothing_px = 0});
+        fit_intensity<S>(free, std::array{pressed}, S(4) * p, S(0.1), 1, {.smoothing_px = 0});
     REQUIRE(fit.ok());
     return {fit.law.linear_mm, fit.max_depth_mm};
   }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
@@ -168,7 +169,7 @@ TEST_CASE("calibration: what it refuses", "[contact_region]") {
   const auto camera = test::height_map(40, 44, 0.16);
   const auto free = test::depths_of<float>(camera, free_pad(0.05), 40, 44);
   using Frames = std::vector<Image<float>>;
-  const auto fit = [&](const Frames& frames, const CurvatureRing& ring = {4}) {
+  const auto fit = [&](const Frames& frames, double ring = 4) {
     return refusal([&] { (void)fit_contact_threshold(camera, frames, ring); });
   };
   CHECK(fit({free}) == "accepted");
@@ -180,7 +181,7 @@ TEST_CASE("calibration: what it refuses", "[contact_region]") {
   CHECK(begins_with(fit({Image<float>(40, 44, 9.0F)}),
                     "fit_contact_threshold: threshold_per_mm = 0"));
   CHECK(begins_with(fit({Image<float>(0, 44)}), "CurvatureMap: rows = 0"));
-  CHECK(begins_with(fit({free}, {0}), "CurvatureRing: radius_px = 0"));
+  CHECK(begins_with(fit({free}, 0), "CurvatureMap: ring_px = 0"));
   auto bad = camera;
   bad.pitch_mm = -1;
   CHECK(begins_with(refusal([&] { (void)fit_contact_threshold(bad, Frames{free}); }),

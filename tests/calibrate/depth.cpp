@@ -36,7 +36,7 @@ struct Sensor {
     auto s = depth_sample(camera, row, col, depth_mm, Colour<double>{});
     Absorption<double> here = fluid;
     here.kappa *= 1 + ramp * s.plate_mm.x / 20;
-    s.colour = colour_at_depth(here, s.pencil, brightness, g_at(s.plate_mm), depth_mm);
+    s.colour = colour_at_depth(here, s.ray, brightness, g_at(s.plate_mm), depth_mm);
     return s;
   }
 };
@@ -78,7 +78,7 @@ double depth_of(const Fit& fit, const DepthSample<double>& s) {
   for (int k = 0; k < 60; ++k) {
     const double l = (low + high) / 2;
     const double g = fit.light.scattering.at(s.plate_mm);
-    (l > 0 && depth_equation(fit.fluid, s.pencil, g, s.colour, l).first > 0 ? high : low) = l;
+    (l > 0 && depth_equation(fit.fluid, s.ray, g, s.colour, l).first > 0 ? high : low) = l;
   }
   return low;
 }
@@ -100,11 +100,12 @@ TEST_CASE("dW/dc is the derivative of W") {
   rc::prop("against differences in fifty digits", [] {
     const double l = test::log_uniform(1e-4, 15), c = test::log_uniform(1e-6, 1);
     const double k = test::uniform(2, 2.5), h = test::uniform(20, 100);
-    const Pencil<Digits50> wide{Digits50(k), {Digits50(h), Digits50(h - 3)}};
+    const Ray<Digits50> wide{
+        .path_factor = Digits50(k), .meridional_mm = Digits50(h), .sagittal_mm = Digits50(h - 3)};
     const auto w = [&](const Digits50& x) { return scattered_light(Digits50(l), x, wide); };
     const Digits50 truth = test::slope_by_difference(w, Digits50(c), Digits50(c * 1e-15));
-    const double slope =
-        detail::scattered_light_per_absorption(l, c, Pencil<double>{k, {h, h - 3}});
+    const double slope = detail::scattered_light_per_absorption(
+        l, c, Ray<double>{.path_factor = k, .meridional_mm = h, .sagittal_mm = h - 3});
     const double scale = static_cast<double>(w(Digits50(c))) / c;
     RC_ASSERT(std::abs(slope - static_cast<double>(truth)) < 1e-14 * scale * (1 + c * k * l));
   });
@@ -182,8 +183,9 @@ TEST_CASE("calibration of depth: brighter light and longer numbers change only w
   std::vector<DepthSample<long double>> wide;
   for (const auto& s : samples) {
     using L = long double;
-    wide.push_back({{L(s.pencil.path_factor),
-                     {L(s.pencil.height.meridional_mm), L(s.pencil.height.sagittal_mm)}},
+    wide.push_back({{.path_factor = L(s.ray.path_factor),
+                     .meridional_mm = L(s.ray.meridional_mm),
+                     .sagittal_mm = L(s.ray.sagittal_mm)},
                     {L(s.plate_mm.x), L(s.plate_mm.y)},
                     L(s.depth_mm),
                     {L(s.colour.red), L(s.colour.green)},
@@ -206,11 +208,11 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
   const auto cost = [&](const std::array<double, 4>& p) {
     double sum = 0;
     for (const auto& s : samples) {
-      const double path = s.pencil.path_factor * s.depth_mm;
+      const double path = s.ray.path_factor * s.depth_mm;
       const double delta = best[1];  // with the weights of the fit
       const double noise_sq = std::exp(2 * delta * path) + best[2] * best[2];
       const Absorption<double> fluid{p[0], p[0] + p[1], p[2]};
-      const double f = depth_equation(fluid, s.pencil, p[3], s.colour, s.depth_mm).first;
+      const double f = depth_equation(fluid, s.ray, p[3], s.colour, s.depth_mm).first;
       sum += f * f / noise_sq;
     }
     return sum;

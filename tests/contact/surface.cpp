@@ -11,6 +11,7 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"

@@ -13,6 +13,7 @@
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"

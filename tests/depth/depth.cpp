@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "fingerpad/adapt/opencv.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
@@ -333,15 +334,26 @@ TEST_CASE("a pad is judged off the axis only if its whole outline is in the imag
 
 TEST_CASE("the rim is the part of the pad up to a fifth of its depth", "[reference]") {
   DepthReference<double> reference;
-  reference.rows = 1;
+  reference.rows = 32;
   reference.cols = 5;
-  reference.depth_mm = {10, 2, 2.01, 0, test::nan};
+  for (Index i = 0; i < reference.rows; ++i) {
+    reference.depth_mm.insert(reference.depth_mm.end(), {10, 2, 2.01, 0, test::nan});
+  }
   reference.rim_green = 100;
-  const Image<double> light(1, 5, 50);
-  const auto sum = detail::Rim(reference).light(0, 1, as_view(light), as_view(light), GreyScale{});
-  CHECK(sum.pixels == 2);
-  CHECK(sum.lit == 2);
-  CHECK(sum.sum == 1);
+  const auto changes = [&](std::array<int, 5> light) {
+    Image<double> frame(reference.rows, reference.cols);
+    for (Index i = 0; i < reference.rows; ++i) {
+      std::copy(light.begin(), light.end(), &frame(i, 0));
+    }
+    return detail::Rim(reference).has_changed(as_view(frame), as_view(frame), GreyScale{});
+  };
+  CHECK_FALSE(changes({50, 100, 50, 100, 50}));  // only beside it
+  CHECK_FALSE(changes({50, 104, 50, 105, 50}));
+  CHECK(changes({100, 50, 100, 100, 100}));
+  CHECK(changes({100, 100, 100, 50, 100}));
+  CHECK_FALSE(changes({100, 100, 100, 255, 100}));  // half of it is lit
+  reference.rows = 31;                              // 62 pixels tell nothing
+  CHECK_FALSE(changes({100, 50, 100, 50, 100}));
 }
 
 // Averaged colours, against means that sum every window anew.
@@ -414,7 +426,7 @@ struct Scene {
     detail::ColourRows<S> rows(camera, fluid, reference, area, window_px, 1);
     const auto red = as_view(frame.red);
     const auto green = as_view(frame.green);
-    rows.start(red, green, scale, 0);
+    rows.start(red, green, scale);
     std::vector<S> of_red(static_cast<std::size_t>(area.cols + 64)), of_green = of_red;
     for (Index i = 0; i < area.rows; ++i) {
       rows.next(red, green, scale, of_red.data(), of_green.data());
@@ -445,8 +457,7 @@ struct Scene {
   /// exp(delta k l0) and g W(l0) of a pixel.
   std::pair<double, double> anchor(Index i, Index j) const {
     const Index row = area.row + i, col = area.col + j;
-    const auto pencil =
-        pencil_of(camera, ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col)));
+    const auto pencil = ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col));
     const auto l = static_cast<double>(reference.depth(row, col));
     const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
     return {std::exp(delta * pencil.path_factor * l),
@@ -1028,55 +1039,32 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   refused(r, c + 1, r, c);
   refused(r, c, r + 1, c);
   refused(r, c, r, c - 1);
-  test::Estimate<float> e(r, c);
-  const auto untouched = e;
-  const std::pair<Index, Index> no_bands[] = {{-1, r}, {0, r + 1}, {4, 3}};
-  for (const auto& [first, last] : no_bands) {
-    CHECK_FALSE(estimator.band(first, last, good.red, good.green, e.depth_mm, e.status).ok());
-  }
-  CHECK(e.depth_mm.cells == untouched.depth_mm.cells);
-  CHECK(e.status.cells == untouched.status.cells);
   // and the estimator remains usable
+  test::Estimate<float> e(r, c);
   CHECK(estimator(good.red, good.green, e.depth_mm).ok());
 }
 
-TEMPLATE_TEST_CASE("threads may share a frame, each with a copy of the estimator",
-                   "[depth]",
-                   std::uint8_t,
-                   std::uint16_t,
-                   float) {
+TEST_CASE("threads may use copies of one estimator", "[depth]") {
   const Pad pad = fine_pad();
-  auto frame = pad.frame<TestType>(pad.pressed_depths(2), 1, 4);
-  test::Random random(2);
-  spoil_in_clumps(frame, 0.2, random);
-  const int window_px = GENERATE(1, 9);
-  auto estimator = pad.estimator<float>({.window_px = window_px});
+  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
+  auto estimator = pad.estimator<float>({.window_px = 9});
   const auto alone = test::estimate(estimator, frame);
-  const auto never_used = pad.estimator<float>({.window_px = window_px});
-  test::Estimate<float> shared(pad.rows, pad.cols);
+  std::vector<test::Estimate<float>> seen(4, {pad.rows, pad.cols});
   std::vector<std::thread> threads;
-  constexpr Index count = 4;
-  std::vector<DepthResult> results(count);
-  for (Index k = 0; k < count; ++k) {
-    // copies of one that has worked, and of one that has not
-    threads.emplace_back([&, k, own = k % 2 == 0 ? estimator : never_used]() mutable {
+  for (test::Estimate<float>& to : seen) {
+    threads.emplace_back([&frame, &to, own = estimator]() mutable {
       for (int again = 0; again < 5; ++again) {
-        results[static_cast<std::size_t>(k)] =
-            own.band(k * pad.rows / count, (k + 1) * pad.rows / count, frame.red, frame.green,
-                     shared.depth_mm, shared.status);
+        (void)own(frame.red, frame.green, to.depth_mm, to.status);
       }
     });
   }
   for (std::thread& thread : threads) {
     thread.join();
   }
-  CHECK(test::same_bits(shared.depth_mm, alone.depth_mm));
-  CHECK(shared.status.cells == alone.status.cells);
-  for (std::size_t k = 1; k < results.size(); ++k) {
-    results[0].add(results[k]);
+  for (const test::Estimate<float>& by : seen) {
+    CHECK(test::same_bits(by.depth_mm, alone.depth_mm));
+    CHECK(by.status.cells == alone.status.cells);
   }
-  CHECK(results[0].status == alone.result.status);
-  CHECK(results[0].count == alone.result.count);
 }
 
 TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth", "[depth]") {
@@ -1122,10 +1110,11 @@ TEST_CASE("every number type gives the same depth", "[depth]") {
       for (Index j = 0; j < pad.cols; ++j) {
         if (reference.in_pad(i, j)) {
           const auto light = pad.pencil(i, j);
-          const Pencil<S> pencil{S(light.path_factor),
-                                 {S(light.height.meridional_mm), S(light.height.sagittal_mm)}};
+          const Ray<S> ray{.path_factor = S(light.path_factor),
+                           .meridional_mm = S(light.meridional_mm),
+                           .sagittal_mm = S(light.sagittal_mm)};
           const auto root =
-              newton_depth(cast<S>(pad.fluid), pencil, S(reference.g(i, j)),
+              newton_depth(cast<S>(pad.fluid), ray, S(reference.g(i, j)),
                            Colour<S>{S(double(frame.red(i, j))), S(double(frame.green(i, j)))});
           REQUIRE(root.status == plain.status(i, j));
           depth(i, j) = static_cast<double>(value(root.depth_mm));
@@ -1153,9 +1142,10 @@ S shifted_depth(const Pad& pad, double l, int which, const S& x) {
   const auto c = pad.colour(10, 20, l, pad.brightness);
   const Absorption<S> fluid{shift(2, pad.fluid.c_red_per_mm), S(pad.fluid.c_green_per_mm),
                             shift(3, pad.fluid.kappa), S(pad.fluid.max_depth_mm)};
-  const Pencil<S> pencil{S(light.path_factor),
-                         {S(light.height.meridional_mm), S(light.height.sagittal_mm)}};
-  return newton_depth(fluid, pencil, shift(4, pad.g(10, 20)),
+  const Ray<S> ray{.path_factor = S(light.path_factor),
+                   .meridional_mm = S(light.meridional_mm),
+                   .sagittal_mm = S(light.sagittal_mm)};
+  return newton_depth(fluid, ray, shift(4, pad.g(10, 20)),
                       Colour<S>{shift(0, c.red), shift(1, c.green)})
       .depth_mm;
 }
@@ -1447,8 +1437,9 @@ struct Newton {
           const auto light = pad.pencil(i, j);
           depth(i, j) =
               newton_depth(cast<S>(pad.fluid),
-                           Pencil<S>{S(light.path_factor),
-                                     {S(light.height.meridional_mm), S(light.height.sagittal_mm)}},
+                           Ray<S>{.path_factor = S(light.path_factor),
+                                  .meridional_mm = S(light.meridional_mm),
+                                  .sagittal_mm = S(light.sagittal_mm)},
                            reference.g(i, j), Colour<S>{frame.red(i, j), frame.green(i, j)})
                   .depth_mm;
         }
@@ -1680,43 +1671,24 @@ struct Kind {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("bands of rows give the bits of the whole frame, and the counts add up",
+TEMPLATE_TEST_CASE("the counts are those of the statuses, and only ok comes with a number",
                    "[depth][law]",
                    (Kind<std::uint8_t, float>),
                    (Kind<std::uint16_t, float>),
                    (Kind<float, float>),
                    (Kind<std::uint8_t, double>),
                    (Kind<double, double>)) {
-  rc::prop("for any band", [] {
+  rc::prop("for any frame", [] {
     using S = typename TestType::Scalar;
     using Pixel = typename TestType::Pixel;
     Pad pad = any_pad();
-    pad.rows += test::whole(0, 50);  // more than the rows after which running sums restart
+    pad.rows += test::whole(0, 50);
     auto frame = pad.frame<Pixel>(pad.pressed_depths(test::uniform(0, 5)), 1, 3);
     spoil(frame, static_cast<int>(test::whole(0, 40)));
-    // any odd window, so that restarts and borders fall everywhere
     const int window_px = 1 + 2 * static_cast<int>(test::whole(0, 10));
     auto estimator = pad.estimator<S>({.window_px = window_px});
     const auto whole = test::estimate(estimator, frame);
 
-    test::Estimate<S> bands(pad.rows, pad.cols);
-    const Index a = test::whole(0, pad.rows);
-    const Index b = test::whole(a, pad.rows);
-    std::array<Index, pixel_status_count> count = {};
-    const std::pair<Index, Index> rows_of[] = {{b, pad.rows}, {0, a}, {a, b}};  // in any order
-    for (const auto& [first, last] : rows_of) {
-      const auto result =
-          estimator.band(first, last, frame.red, frame.green, bands.depth_mm, bands.status);
-      RC_ASSERT(result.ok());
-      RC_ASSERT(std::accumulate(result.count.begin(), result.count.end(), Index(0)) ==
-                (last - first) * pad.cols);
-      for (std::size_t k = 0; k < count.size(); ++k) {
-        count[k] += result.count[k];
-      }
-    }
-    RC_ASSERT(test::same_bits(bands.depth_mm, whole.depth_mm));
-    RC_ASSERT(bands.status.cells == whole.status.cells);
-    RC_ASSERT(count == whole.result.count);
     std::array<Index, pixel_status_count> seen = {};
     Index numbers = 0;
     for (std::size_t k = 0; k < whole.status.cells.size(); ++k) {
@@ -1764,8 +1736,10 @@ Camera<double> camera_at_corner() {
 }
 
 template <class S>
-Pencil<S> as(const Pencil<double>& p) {
-  return {S(p.path_factor), {S(p.height.meridional_mm), S(p.height.sagittal_mm)}};
+Ray<S> as(const Ray<double>& p) {
+  return {.path_factor = S(p.path_factor),
+          .meridional_mm = S(p.meridional_mm),
+          .sagittal_mm = S(p.sagittal_mm)};
 }
 
 /// F in the slides' closed form, independent of the library's series.
@@ -1774,14 +1748,14 @@ struct ExactEquation {
 
   template <class S>
   ExactEquation(const Absorption<S>& fluid,
-                const Pencil<Digits50>& p,
+                const Ray<Digits50>& p,
                 const Digits50& scatter,
                 const Colour<S>& colour)
       : c(fluid.c_red_per_mm),
         delta(Digits50(fluid.c_green_per_mm) - Digits50(fluid.c_red_per_mm)),
         k(p.path_factor),
-        product(p.height.meridional_mm * p.height.sagittal_mm),
-        sum(p.height.meridional_mm + p.height.sagittal_mm),
+        product(p.meridional_mm * p.sagittal_mm),
+        sum(p.meridional_mm + p.sagittal_mm),
         kappa_red(Digits50(fluid.kappa) * Digits50(colour.red)),
         green(colour.green),
         g(scatter) {}
@@ -1812,7 +1786,7 @@ double error_mm(const S& depth, const Digits50& exact) {
 template <class S>
 struct Pixel {
   Absorption<S> fluid;
-  Pencil<double> light;
+  Ray<double> light;
   S g;
   Colour<S> colour;
   Digits50 exact;
@@ -1824,12 +1798,12 @@ struct Pixel {
         bool one_height = false)
       : fluid(cast<S>(f)) {
     const auto camera = camera_at_corner();
-    light = pencil_of(camera, ray_at_pixel(camera, 0.0, rho_px));
-    light.height.sagittal_mm = one_height ? light.height.meridional_mm : light.height.sagittal_mm;
+    light = ray_at_pixel(camera, 0.0, rho_px);
+    light.sagittal_mm = one_height ? light.meridional_mm : light.sagittal_mm;
     // rounding of the pencil is no error of the solver
-    light = as<double>(Pencil<double>{static_cast<double>(S(light.path_factor)),
-                                      {static_cast<double>(S(light.height.meridional_mm)),
-                                       static_cast<double>(S(light.height.sagittal_mm))}});
+    light = as<double>(Ray<double>{.path_factor = static_cast<double>(S(light.path_factor)),
+                                   .meridional_mm = static_cast<double>(S(light.meridional_mm)),
+                                   .sagittal_mm = static_cast<double>(S(light.sagittal_mm))});
     g = S(scattering);
     const auto c = colour_at_depth(f, light, bright, scattering, l);
     colour = {S(c.red), S(c.green)};
@@ -1902,7 +1876,7 @@ namespace {
 /// The printed equations at a pixel with one height.
 double printed_quotient(const Pixel<double>& p, double l) {
   const published::Fluid<double> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
-  return published::quotient(fluid, p.light.path_factor, p.light.height.meridional_mm, p.colour.red,
+  return published::quotient(fluid, p.light.path_factor, p.light.meridional_mm, p.colour.red,
                              p.colour.green, l);
 }
 
@@ -1916,8 +1890,8 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
           const published::Fluid<double> printed{fluid.c_red_per_mm, fluid.c_green_per_mm,
                                                  fluid.kappa};
           const double l =
-              published::bisect(printed, light.path_factor, light.height.meridional_mm, g,
-                                colour.red, colour.green, fluid.max_depth_mm, halvings);
+              published::bisect(printed, light.path_factor, light.meridional_mm, g, colour.red,
+                                colour.green, fluid.max_depth_mm, halvings);
           return DepthRoot<double>{l, PixelStatus::ok};
         },
         brightness, true);
@@ -2007,7 +1981,7 @@ class RowSolver {
     const auto g = static_cast<double>(S(scattering));
     double worst = 0;
     for (int j = 0; j < static_cast<int>(pixels_to_rim); j += 39) {
-      const auto light = pencil_of(camera, ray_at_pixel(camera, 0.0, static_cast<double>(j)));
+      const auto light = ray_at_pixel(camera, 0.0, static_cast<double>(j));
       const auto c = colour_at_depth(fluid_, light, bright, g, l);
       const Colour<S> rounded{S(c.red), S(c.green)};
       const auto root = in_a_block(rows_, j, rounded.red, rounded.green, per_g);
@@ -2072,7 +2046,6 @@ long taken(DepthEstimator<S>& estimator, const Red& red, const Green& green) {
   for (int again = 0; again < 3; ++again) {
     (void)estimator(red, green, e.depth_mm, e.status);
     (void)estimator(red, green, e.depth_mm);
-    (void)estimator.band(5, 9, red, green, e.depth_mm, e.status);
   }
   return test::allocations() - before;
 }

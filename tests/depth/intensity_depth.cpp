@@ -11,6 +11,7 @@
 #include "fingerpad/contact/surface.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"

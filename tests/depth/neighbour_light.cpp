@@ -42,16 +42,16 @@ Map<double> membrane(Index rows, Index cols, double pressed_mm, double phase) {
   return l;
 }
 
-/// Whether two maps are equal to the last bit; NaN equals NaN.
+/// Whether two maps differ by no more than `margin`; NaN equals NaN.
 template <class A, class B>
-bool identical(const A& a, const B& b) {
+bool identical(const A& a, const B& b, double margin = 0) {
   if (a.rows() != b.rows() || a.cols() != b.cols()) {
     return false;
   }
   for (Index i = 0; i < a.rows(); ++i) {
     for (Index j = 0; j < a.cols(); ++j) {
       const bool both_nan = std::isnan(a(i, j)) && std::isnan(b(i, j));
-      if (!both_nan && a(i, j) != b(i, j)) {
+      if (!both_nan && !(std::abs(a(i, j) - b(i, j)) <= margin)) {
         return false;
       }
     }
@@ -86,23 +86,21 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
                               const Map<double>& depth,
                               double pitch) {
   const double aspect = light.pixel_aspect;
-  Map<double> change(depth.rows(), depth.cols()), known(depth.rows(), depth.cols());
+  Map<double> change(depth.rows(), depth.cols());
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
-      known(i, j) = slow_psi(reference, i, j, pitch, aspect);
-      change(i, j) = slow_psi(depth, i, j, pitch, aspect) - known(i, j);
+      change(i, j) =
+          slow_psi(depth, i, j, pitch, aspect) - slow_psi(reference, i, j, pitch, aspect);
     }
   }
   Map<double> out(depth.rows(), depth.cols());
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
-      double sum = 0, seen = 0, all = 0;
+      double sum = 0;
       for (Index r = 0; r < depth.rows(); ++r) {
         for (Index c = 0; c < depth.cols(); ++c) {
           const double y = aspect * static_cast<double>(r - i), x = static_cast<double>(c - j);
           if (x * x + y * y <= static_cast<double>(light.radius_px * light.radius_px)) {
-            all += std::isnan(known(r, c)) ? 0 : 1;
-            seen += std::isnan(change(r, c)) ? 0 : 1;
             sum += std::isnan(change(r, c)) ? 0 : change(r, c);
           }
         }
@@ -110,7 +108,7 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
       const double risen = depth(i, j) - reference(i, j);
       const double m =
           std::isnan(risen) ? 0 : light.m0_mm_per_rad * std::exp(light.n_per_mm * risen);
-      const double l = depth(i, j) - m * (seen > 0 ? sum * all / seen : 0);
+      const double l = depth(i, j) - m * sum;
       out(i, j) = l < 0 ? 0 : l;
     }
   }
@@ -190,7 +188,8 @@ TEST_CASE("neighbour light: exact disc is the definition, with missing pixels or
 }
 
 TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transposed or rotated") {
-  rc::prop("to the last bit", [] {
+  rc::prop("up to the rounding of sums", [] {
+    constexpr double margin = 1e-12;
     const NeighbourLight<double> light = random_light(12);
     Map<double> reference = membrane(32, 40, 0, 0);
     Map<double> depth = membrane(32, 40, test::uniform(0, 3), test::uniform(0, 6));
@@ -204,15 +203,16 @@ TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transpo
       return wide;
     };
     const Map<double> moved = compensated(light, shifted(reference), shifted(depth));
-    RC_ASSERT(identical(moved, shifted(plain)));
+    RC_ASSERT(identical(moved, shifted(plain), margin));
 
     const auto transposed = [](const Map<double>& l) { return Map<double>(l.transpose()); };
-    RC_ASSERT(
-        identical(compensated(light, transposed(reference), transposed(depth)), transposed(plain)));
+    RC_ASSERT(identical(compensated(light, transposed(reference), transposed(depth)),
+                        transposed(plain), margin));
     const auto rotated = [](const Map<double>& l) {
       return Map<double>(l.transpose().rowwise().reverse());
     };
-    RC_ASSERT(identical(compensated(light, rotated(reference), rotated(depth)), rotated(plain)));
+    RC_ASSERT(
+        identical(compensated(light, rotated(reference), rotated(depth)), rotated(plain), margin));
   });
 }
 
@@ -233,7 +233,8 @@ TEST_CASE("neighbour light: a missing pixel changes nothing beyond its disc") {
         RC_ASSERT(std::isnan(after(r, c)) == std::isnan(hole(r, c)));
         const double distance = std::hypot(static_cast<double>(r - i), static_cast<double>(c - j));
         const bool far = distance > static_cast<double>(light.radius_px) * 1.5 + 1;
-        RC_ASSERT(here || !far || std::isnan(depth(r, c)) || after(r, c) == before(r, c));
+        RC_ASSERT(here || !far || std::isnan(depth(r, c)) ||
+                  std::abs(after(r, c) - before(r, c)) < 1e-5F);  // rounding of sums
         RC_ASSERT(here || std::isnan(depth(r, c)) || std::isfinite(after(r, c)));
       }
     }
@@ -358,14 +359,6 @@ TEST_CASE("neighbour light: samples of a smooth pad lose as much light") {
   const Map<double> taken_by_samples = means(pressed) - out;
   CHECK(taken.abs().maxCoeff() > 0.03);
   CHECK((taken_by_samples - taken).abs().maxCoeff() < 0.1 * taken.abs().maxCoeff());
-}
-
-TEST_CASE("neighbour light: a pixel around which nothing is seen keeps its depth") {
-  const Map<float> reference = Map<float>::Constant(20, 20, 1.0F);
-  Map<float> depth = Map<float>::Constant(20, 20, std::nanf(""));
-  depth(9, 11) = 1.0F;
-  const Map<float> out = compensated(NeighbourLight<float>{5, 0.001F, 0.2F}, reference, depth);
-  CHECK(out(9, 11) == 1.0F);
 }
 
 TEST_CASE(

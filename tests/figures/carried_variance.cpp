@@ -11,6 +11,7 @@
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
@@ -45,8 +46,7 @@ S depth_after_fit(const test::Pad& pad,
   camera.pitch_mm = p[7];
   const auto reference = fit_reference<S>(camera, fluid, frame.red, frame.green, shape);
   const auto ray = ray_at_pixel(camera, S(static_cast<double>(row)), S(static_cast<double>(col)));
-  return newton_depth(fluid, pencil_of(camera, ray), reference.g(row, col),
-                      Colour<S>{S(seen.red), S(seen.green)})
+  return newton_depth(fluid, ray, reference.g(row, col), Colour<S>{S(seen.red), S(seen.green)})
       .depth_mm;
 }
 

@@ -12,6 +12,7 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/finite_elements.hpp"
 
@@ -70,7 +71,7 @@ TEST_CASE("contact of finite-element membranes by their heights", "[contact_regi
   const Exact exact;
   const std::vector free = {exact.depth("free")};
   ContactTest test;
-  test.ring.radius_px = 12;
+  test.ring_px = 12;
   test.threshold_per_mm = fit_contact_threshold(exact.camera, free, {12}).threshold_per_mm;
   CHECK(test.threshold_per_mm == Approx(0.025).epsilon(0.2));
   ContactRegion<> region(exact.camera, 480, 480, test);

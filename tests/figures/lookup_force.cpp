@@ -15,6 +15,7 @@
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/contact/equivalent_flat_area.hpp"
 #include "fingerpad/force/look_up.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/contact_records.hpp"
 #include "support/wrench_frames.hpp"

@@ -24,7 +24,7 @@ void try_contact(Input& in) {
   ContactTest test;
   test.threshold_per_mm = in.number(0.001, 0.2);
   test.free_apex_mm = in.number(0, 20);
-  test.ring.radius_px = static_cast<int>(in.whole(0, 25));
+  test.ring_px = static_cast<int>(in.whole(0, 25));
   test.min_region_px = in.whole(0, 300);
   ContactRegion<> find(camera, rows, cols, test);
 

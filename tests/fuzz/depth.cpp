@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fuzz/input.hpp"
 
 using namespace fingerpad;

@@ -19,6 +19,7 @@
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -131,7 +132,7 @@ Colours colours() {
   Colours samples;
   for (int k = 0; k < 20; ++k) {
     auto s = depth_sample(camera, 239.5, 319.5 + 10 * (k % 5), 0.3 + 0.6 * k, Colour<double>{});
-    s.colour = colour_at_depth(fluid, s.pencil, 57.0, 0.0163, s.depth_mm);
+    s.colour = colour_at_depth(fluid, s.ray, 57.0, 0.0163, s.depth_mm);
     s.colour.red += 0.03 * random.normal();
     s.colour.green += 0.03 * random.normal();
     samples.push_back(s);
@@ -325,7 +326,7 @@ TEST_CASE("mistakes: the fluid", "[mistakes]") {
            s = depth_sample(Camera<double>{}, 239.5 + 10 * static_cast<double>(k % 3),
                             319.5 + 10 * static_cast<double>(k % 5), s.depth_mm, s.colour);
            const double g = 0.0163 * (1 - 0.4 * s.plate_mm.x);
-           s.colour = colour_at_depth(Absorption<double>{}, s.pencil, 57.0, g, s.depth_mm);
+           s.colour = colour_at_depth(Absorption<double>{}, s.ray, 57.0, g, s.depth_mm);
          }
        }),
        "g is not positive everywhere"},

@@ -93,7 +93,7 @@ Pixels half_of(Pixels image) {
 /// Two presses of a ball into a gel under an uneven lamp; the depth is 4 mm times the logarithm.
 struct Presses {
   static constexpr Index size = 96;
-  BallPress<> ball = {.ball_mm = 4, .mm_per_px = 0.1};
+  double ball_mm = 4, mm_per_px = 0.1;
   Pixels free{size, size};
   std::array<Pixels, 2> pressed = {free, free};
 
@@ -109,8 +109,8 @@ struct Presses {
     for (Index i = 0; i < size; ++i) {
       for (Index j = 0; j < size; ++j) {
         const double x = 0.1 * static_cast<double>(j) - 4.2, y = 0.1 * static_cast<double>(i) - 5;
-        const double root_sq = ball.ball_mm * ball.ball_mm - x * x - y * y;
-        const double depth = root_sq > 0 ? depth_mm - ball.ball_mm + std::sqrt(root_sq) : 0;
+        const double root_sq = ball_mm * ball_mm - x * x - y * y;
+        const double depth = root_sq > 0 ? depth_mm - ball_mm + std::sqrt(root_sq) : 0;
         const double light = 120 + 0.4 * static_cast<double>(i) - 0.3 * static_cast<double>(j);
         image(i, j) = light * std::exp(-std::fmax(depth, 0) / 4) + 0.3 * random.normal();
       }
@@ -121,7 +121,8 @@ struct Presses {
 std::string said_of_intensity(const Presses& presses) {
   std::string said;
   const std::string refused = test::refusal([&] {
-    const IntensityFit<> fit = fit_intensity(presses.free, presses.pressed, presses.ball);
+    const IntensityFit<> fit =
+        fit_intensity(presses.free, presses.pressed, presses.ball_mm, presses.mm_per_px);
     said = !fit.ok() ? text_of(fit) : std::abs(fit.law.linear_mm - 4) < 0.2 ? "right" : "wrong";
   });
   return refused == "accepted" ? said : refused;
@@ -297,13 +298,13 @@ TEST_CASE("mistakes: the light of one channel", "[mistakes]") {
   const char* const no_ball = "fit_intensity: press = 0, must be of a ball";
   const Mistake<Presses> mistakes[] = {
       {"none", [](Presses&) {}, "right"},
-      {"ball in m", [](Presses& p) { p.ball.ball_mm /= 1000; }, no_ball},
-      {"ball in um", [](Presses& p) { p.ball.ball_mm *= 1000; }, "give depths in mm"},
+      {"ball in m", [](Presses& p) { p.ball_mm /= 1000; }, no_ball},
+      {"ball in um", [](Presses& p) { p.ball_mm *= 1000; }, "give depths in mm"},
       {"diameter for radius",  // twice as large and half as deep: equally dark
-       [](Presses& p) { p.ball.ball_mm *= 2; }, "wrong"},
-      {"pixels in m", [](Presses& p) { p.ball.mm_per_px /= 1000; }, "give depths in mm"},
-      {"pixels in um", [](Presses& p) { p.ball.mm_per_px *= 1000; }, no_ball},
-      {"pixels of another zoom", [](Presses& p) { p.ball.mm_per_px *= 2; }, no_ball},
+       [](Presses& p) { p.ball_mm *= 2; }, "wrong"},
+      {"pixels in m", [](Presses& p) { p.mm_per_px /= 1000; }, "give depths in mm"},
+      {"pixels in um", [](Presses& p) { p.mm_per_px *= 1000; }, no_ball},
+      {"pixels of another zoom", [](Presses& p) { p.mm_per_px *= 2; }, no_ball},
       {"light times 1000", in_all(scaled(1e3)), no_ball},
       {"frames of a longer exposure", in_each(scaled(1e3)), no_ball},
       {"frames of a shorter exposure", in_each(scaled(1e-3)), no_ball},

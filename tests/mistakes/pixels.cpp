@@ -16,6 +16,7 @@
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
 #include "support/gel_frames.hpp"
 #include "support/soap_film.hpp"
@@ -192,7 +193,7 @@ struct PressedPad {
 std::string of_region(const std::string& mistake) {
   const PressedPad pad;
   ContactTest options;
-  options.ring.radius_px = 5;
+  options.ring_px = 5;
   ContactRegion<> region(pad.camera, size, size, options);
   Image<std::uint8_t> mask(size, size);
   const ContactResult right = region(pad.now, mask);

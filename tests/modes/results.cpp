@@ -53,7 +53,7 @@ void tell_depth_and_contact(Results& tell) {
   tell("depth mean mm", mean(depth));
   tell("depth in the middle mm", static_cast<double>(depth(24, 28)));
   ContactTest test;
-  test.ring.radius_px = 4;
+  test.ring_px = 4;
   test.min_region_px = 10;
   static ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);

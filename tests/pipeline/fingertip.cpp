@@ -170,7 +170,7 @@ TEST_CASE("at every pixel the depth is that of the estimator, bit for bit", "[ch
 TEST_CASE("the flat area can be asked for without a curve", "[chain]") {
   const Run whole(frames().options());
   FingertipOptions options = contact_and_depth(3);
-  options.flat_area.emplace();
+  options.flat_area = true;
   Fingertip tip(options);
   const auto touch = touch_of(tip, frames()[0].view());
   CHECK(test::same_bits(touch.flat_area.area_mm2, whole.results[0].flat_area.area_mm2));

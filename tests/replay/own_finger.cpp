@@ -16,6 +16,7 @@
 #include "common/recording.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
@@ -60,7 +61,7 @@ cv::Mat picture(const DepthMap& depth_mm, test::Random& random, double noise = 0
       const double x = at.x / 20, y = at.y / 20;
       const double spot = std::exp(-((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2)) / 0.5);
       const double lamp = 1 + 0.08 * x - 0.06 * y + 0.06 * spot;
-      const auto light = pencil_of(camera, ray_at_pixel(camera, double(i), double(j)));
+      const auto light = ray_at_pixel(camera, double(i), double(j));
       const auto c = std::isfinite(l) ? colour_at_depth(fluid, light, 180.0, 0.05, l)
                                       : fingerpad::Colour<double>{5, 5};
       const auto stored = [&](double level) {

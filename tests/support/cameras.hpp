@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "fingerpad/optics/camera.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/generators.hpp"
 
 namespace test {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "pad.hpp"
 
 namespace test {

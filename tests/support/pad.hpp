@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/published/depth.hpp"
 #include "image.hpp"
 
@@ -104,10 +105,10 @@ struct Pad {
   fingerpad::Ray<double> ray(Index row, Index col) const {
     return fingerpad::ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col));
   }
-  fingerpad::Pencil<double> pencil(Index row, Index col) const {
-    auto pencil = fingerpad::pencil_of(camera, ray(row, col));
+  fingerpad::Ray<double> pencil(Index row, Index col) const {
+    auto pencil = ray(row, col);
     if (one_height) {
-      pencil.height.sagittal_mm = pencil.height.meridional_mm;
+      pencil.sagittal_mm = pencil.meridional_mm;
     }
     return pencil;
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/optics/camera.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "pad.hpp"
 
 namespace test {

@@ -81,7 +81,7 @@ class PressedFrames {
     // most without samples
     const double scale = static_cast<double>(pad_.cols) / 640;
     f.smoothing_px = (std::min)(2 * static_cast<int>(14 * scale) + 1, 109);
-    f.contact.ring.radius_px = 25 * scale;
+    f.contact.ring_px = 25 * scale;
     // by area: the plate's pressure on it; by depth: a line between two of the frames
     constexpr double residual_n = 0.1;
     f.force_of_area.emplace(fingerpad::ForceCurve<>{{0, pressure_mpa}, 50, 400, residual_n});

@@ -15,6 +15,7 @@
 
 #include "bench/support/scene_frames.hpp"
 #include "fingerpad/contact/contact_region.hpp"
+#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/pipeline/foam_hand.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "fingerpad/published/depth.hpp"
@@ -115,7 +116,7 @@ inline RegionFound default_region(const Heights& height,
                                   const HeightMap& map = {}) {
   return region_of(height, touches, map, [](const auto& camera, const auto& depth, auto& mask) {
     fingerpad::ContactTest test;
-    test.ring.radius_px = 12;
+    test.ring_px = 12;
     test.threshold_per_mm = half_of_free_per_mm;
     fingerpad::ContactRegion<> region(camera, depth.rows(), depth.cols(), test);
     (void)region(depth, mask);

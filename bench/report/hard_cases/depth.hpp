@@ -15,16 +15,16 @@ namespace hard {
 using fingerpad::Absorption;
 using fingerpad::Camera;
 using fingerpad::Colour;
-using fingerpad::Pencil;
 using fingerpad::PixelStatus;
+using fingerpad::Ray;
 
 /// The slides' closed form, with Q1 and Q2 as printed.
 template <class S>
-S closed_scattered_light(const S& l, const S& c, const Pencil<S>& p) {
+S closed_scattered_light(const S& l, const S& c, const Ray<S>& p) {
   using std::exp;
   const S& k = p.path_factor;
-  const S product = p.height.meridional_mm * p.height.sagittal_mm;
-  const S sum = p.height.meridional_mm + p.height.sagittal_mm;
+  const S product = p.meridional_mm * p.sagittal_mm;
+  const S sum = p.meridional_mm + p.sagittal_mm;
   const S q1 = product / k + sum / (c * k * k) + S(2) / (c * c * k * k * k);
   const S q2 = (l * l + sum * l) / k + S(2) * l / (c * k * k);
   const S e = exp(S(-c * k * l));
@@ -32,12 +32,14 @@ S closed_scattered_light(const S& l, const S& c, const Pencil<S>& p) {
 }
 
 template <class To, class From>
-Pencil<To> as(const Pencil<From>& p) {
-  return {To(p.path_factor), {To(p.height.meridional_mm), To(p.height.sagittal_mm)}};
+Ray<To> as(const Ray<From>& p) {
+  return {.path_factor = To(p.path_factor),
+          .meridional_mm = To(p.meridional_mm),
+          .sagittal_mm = To(p.sagittal_mm)};
 }
 template <class S>
-Pencil<S> pencil_at_rim() {
-  return as<S>(Pencil<double>{2.05, {72.7, 68.5}});
+Ray<S> pencil_at_rim() {
+  return as<S>(Ray<double>{.path_factor = 2.05, .meridional_mm = 72.7, .sagittal_mm = 68.5});
 }
 
 template <class S>
@@ -70,7 +72,7 @@ inline Row small_absorption() {
 template <class S>
 struct SeenPixel {
   Absorption<S> fluid = fingerpad::cast<S>(Absorption<double>());
-  Pencil<S> light = pencil_at_rim<S>();
+  Ray<S> light = pencil_at_rim<S>();
   S g = S(0.0163);
   Colour<S> colour;
 
@@ -93,7 +95,7 @@ template <class S>
 S published_bisection(const SeenPixel<S>& p, bool repaired) {
   namespace published = fingerpad::published;
   const published::Fluid<S> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
-  const S k = p.light.path_factor, h2 = p.light.height.meridional_mm;
+  const S k = p.light.path_factor, h2 = p.light.meridional_mm;
   const auto& [red, green] = p.colour;
   if (repaired) {
     return published::bisect(fluid, k, h2, p.g, red, green, p.fluid.max_depth_mm);
@@ -209,7 +211,7 @@ inline Row grazing_rays() {
                  const Digits50 exact = height_by_angles(exact_camera, Digits50(tangent));
                  f.naive.add_relative(height_by_angles(camera, tangent), exact);
                  const auto ray = fingerpad::ray_at_tangent(camera, tangent);
-                 f.stable.add_relative(fingerpad::pencil_heights(camera, ray).meridional_mm, exact);
+                 f.stable.add_relative(ray.meridional_mm, exact);
                }
                return f;
              });

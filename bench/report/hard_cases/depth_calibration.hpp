@@ -11,61 +11,61 @@
 #include "depth.hpp"
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "row.hpp"
 #include "support/pad.hpp"
 
 namespace hard {
 
 inline Row scattering_at_rim() {
-  return row(
-      "depth reference", "g at the rim, where l goes to 0; relative to the g of the colours",
-      "weighted fit over rho^2 of the depth equation itself", []<class S>(S) {
-        Forms f;
-        const fingerpad::Index n = 64;
-        Camera<double> camera;
-        camera.center_x_px = camera.center_y_px = 0;
-        camera.pitch_mm = 0.3;
-        const Absorption<double> fluid;
-        test::Image<S> red(n, n), green(n, n), depth(n, n, S(test::nan));
-        std::vector<Pencil<S>> light;
-        for (fingerpad::Index i = 0; i < n; ++i) {  // a quarter of a pad
-          for (fingerpad::Index j = 0; i * i + j * j <= (n - 1) * (n - 1); ++j) {
-            const double share = static_cast<double>(i * i + j * j) / double((n - 1) * (n - 1));
-            depth(i, j) = S(share < 1 ? 12 * (1 - share * share) : 0);
-            const auto p =
-                fingerpad::pencil_of(camera, fingerpad::ray_at_pixel(camera, double(i), double(j)));
-            const auto c = fingerpad::colour_at_depth(fluid, p, 57.0, 0.0163,
-                                                      static_cast<double>(depth(i, j)));
-            red(i, j) = S(c.red);
-            green(i, j) = S(c.green);
-            if (i == 0) {
-              light.push_back(as<S>(p));
-            }
-          }
-        }
-        depth(0, n - 2) = S(1e-3);  // a thousandth and a millionth of a millimetre
-        depth(0, n - 3) = S(1e-6);
-        for (const fingerpad::Index j : {n - 2, n - 3}) {
-          const auto c =
-              fingerpad::colour_at_depth(fluid, as<double>(light[static_cast<std::size_t>(j)]),
-                                         57.0, 0.0163, static_cast<double>(depth(0, j)));
-          red(0, j) = S(c.red);
-          green(0, j) = S(c.green);
-        }
-        const auto reference = fingerpad::fit_reference<S>(camera, fluid, red, green, depth);
-        const auto fluid_s = fingerpad::cast<S>(fluid);
-        const S delta = fluid_s.c_green_per_mm - fluid_s.c_red_per_mm;
-        for (fingerpad::Index j = 0; j < n; ++j) {
-          const Pencil<S>& p = light[static_cast<std::size_t>(j)];
-          const S l = depth(0, j);
-          const S known =
-              fluid_s.kappa * red(0, j) - green(0, j) * std::exp(delta * p.path_factor * l);
-          const S quotient = known / fingerpad::scattered_light(l, fluid_s.c_red_per_mm, p);
-          f.naive.add_relative(quotient, Digits50(0.0163));
-          f.stable.add_relative(reference.g(0, j), Digits50(0.0163));
-        }
-        return f;
-      });
+  return row("depth reference", "g at the rim, where l goes to 0; relative to the g of the colours",
+             "weighted fit over rho^2 of the depth equation itself", []<class S>(S) {
+               Forms f;
+               const fingerpad::Index n = 64;
+               Camera<double> camera;
+               camera.center_x_px = camera.center_y_px = 0;
+               camera.pitch_mm = 0.3;
+               const Absorption<double> fluid;
+               test::Image<S> red(n, n), green(n, n), depth(n, n, S(test::nan));
+               std::vector<Ray<S>> light;
+               for (fingerpad::Index i = 0; i < n; ++i) {  // a quarter of a pad
+                 for (fingerpad::Index j = 0; i * i + j * j <= (n - 1) * (n - 1); ++j) {
+                   const double share =
+                       static_cast<double>(i * i + j * j) / double((n - 1) * (n - 1));
+                   depth(i, j) = S(share < 1 ? 12 * (1 - share * share) : 0);
+                   const auto p = fingerpad::ray_at_pixel(camera, double(i), double(j));
+                   const auto c = fingerpad::colour_at_depth(fluid, p, 57.0, 0.0163,
+                                                             static_cast<double>(depth(i, j)));
+                   red(i, j) = S(c.red);
+                   green(i, j) = S(c.green);
+                   if (i == 0) {
+                     light.push_back(as<S>(p));
+                   }
+                 }
+               }
+               depth(0, n - 2) = S(1e-3);  // a thousandth and a millionth of a millimetre
+               depth(0, n - 3) = S(1e-6);
+               for (const fingerpad::Index j : {n - 2, n - 3}) {
+                 const auto c = fingerpad::colour_at_depth(
+                     fluid, as<double>(light[static_cast<std::size_t>(j)]), 57.0, 0.0163,
+                     static_cast<double>(depth(0, j)));
+                 red(0, j) = S(c.red);
+                 green(0, j) = S(c.green);
+               }
+               const auto reference = fingerpad::fit_reference<S>(camera, fluid, red, green, depth);
+               const auto fluid_s = fingerpad::cast<S>(fluid);
+               const S delta = fluid_s.c_green_per_mm - fluid_s.c_red_per_mm;
+               for (fingerpad::Index j = 0; j < n; ++j) {
+                 const Ray<S>& p = light[static_cast<std::size_t>(j)];
+                 const S l = depth(0, j);
+                 const S known =
+                     fluid_s.kappa * red(0, j) - green(0, j) * std::exp(delta * p.path_factor * l);
+                 const S quotient = known / fingerpad::scattered_light(l, fluid_s.c_red_per_mm, p);
+                 f.naive.add_relative(quotient, Digits50(0.0163));
+                 f.stable.add_relative(reference.g(0, j), Digits50(0.0163));
+               }
+               return f;
+             });
 }
 
 /// Plain Newton's method for c_red, c_green, kappa and g from four equations F(l_i) = 0, with the

@@ -53,7 +53,7 @@ bool contact(const test::Pad& pad, const test::Image<double>& pressed_mm, int ca
     depth_mm.cells[k] = static_cast<float>(pressed_mm.cells[k]);
   }
   ContactTest test;
-  test.ring.radius_px = 12;
+  test.ring_px = 12;
   ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   bool done = true;

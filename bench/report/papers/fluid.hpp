@@ -61,8 +61,8 @@ inline Section fluid_section() {
   for (int k = 0; k < 200; ++k) {
     const auto at = [&](double depth_mm) {
       const auto c = noisy_colour(pad, depth_mm, random);
-      return published::KnownPixel<double>{pencil.path_factor, pencil.height.meridional_mm,
-                                           depth_mm, c.red, c.green};
+      return published::KnownPixel<double>{pencil.path_factor, pencil.meridional_mm, depth_mm,
+                                           c.red, c.green};
     };
     const auto found = published::identify_fluid(at(12), std::array{at(1), at(4), at(8)});
     const auto fluid = found.value_or(published::Fluid<double>());

@@ -173,8 +173,8 @@ inline void add_fluid_fit(std::vector<Form>& forms) {
   test::Random random(3);
   const auto known = [&](double depth_mm) {
     const auto c = noisy_colour(pad, depth_mm, random);
-    return published::KnownPixel<double>{pencil.path_factor, pencil.height.meridional_mm, depth_mm,
-                                         c.red, c.green};
+    return published::KnownPixel<double>{pencil.path_factor, pencil.meridional_mm, depth_mm, c.red,
+                                         c.green};
   };
   std::vector<double> printed, ours;
   const auto reference = known(12);

@@ -42,7 +42,7 @@ Trial absorption() {
       const double depth_mm = 0.3 + 0.2 * k;
       auto s = depth_sample(camera, 239.5 + 20 * (k % 5 - 2), 319.5, depth_mm,
                             fingerpad::Colour<double>{});
-      s.colour = colour_at_depth(fluid, s.pencil, 57.0, 0.0163, depth_mm);
+      s.colour = colour_at_depth(fluid, s.ray, 57.0, 0.0163, depth_mm);
       s.colour.red += noise * chance.normal();
       s.colour.green += noise * chance.normal();
       samples.push_back(s);

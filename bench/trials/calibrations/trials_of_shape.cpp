@@ -74,8 +74,7 @@ Trial cap() {
 /// Eight presses of a ball into a gel seen in one channel, with one grey level of noise.
 Trial intensity() {
   using Picture = cv::Mat_<double>;
-  constexpr double law_mm = 4, bright = 150;
-  constexpr fingerpad::BallPress<> ball{.ball_mm = 4, .mm_per_px = 0.1};
+  constexpr double law_mm = 4, bright = 150, ball_mm = 4, mm_per_px = 0.1;
   const Picture free(64, 64, bright);
   const auto measure = [=](Chance& chance) {
     std::vector<Picture> presses;
@@ -84,9 +83,9 @@ Trial intensity() {
       const double depth = 0.4 + 0.07 * k, x = 3.1 + 0.1 * (k % 3), y = 3.0 + 0.1 * (k % 4);
       for (int i = 0; i < free.rows; ++i) {
         for (int j = 0; j < free.cols; ++j) {
-          const double rho = std::hypot(ball.mm_per_px * j - x, ball.mm_per_px * i - y);
-          const double root = std::sqrt(std::fmax(ball.ball_mm * ball.ball_mm - rho * rho, 0));
-          const double dent = std::fmax(depth - ball.ball_mm + root, 0);
+          const double rho = std::hypot(mm_per_px * j - x, mm_per_px * i - y);
+          const double root = std::sqrt(std::fmax(ball_mm * ball_mm - rho * rho, 0));
+          const double dent = std::fmax(depth - ball_mm + root, 0);
           presses.back()(i, j) = bright * std::exp(-dent / law_mm) + chance.normal();
         }
       }
@@ -94,7 +93,7 @@ Trial intensity() {
     return presses;
   };
   const auto fit = [=](const std::vector<Picture>& presses) {
-    const auto found = fit_intensity(free, presses, ball);
+    const auto found = fit_intensity(free, presses, ball_mm, mm_per_px);
     return Estimate{{found.law.linear_mm}, {{found.covariance[0][0]}}};
   };
   return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);

@@ -18,6 +18,7 @@
 #include "fingerpad/calibrate/depth.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 
 namespace calibrate {
 namespace {
@@ -332,16 +333,14 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   fingerpad::ThresholdFit<double> pad;
   for (int width = first_px; width <= 2 * first_px; width += width / 8 * 2) {
     sensor.smoothing_px = width;
-    fingerpad::CurvatureRing ring;
-    ring.radius_px *= std::pow(double(width) / first_px, 2);
-    found.ring_px = ring.radius_px;
+    found.ring_px = fingerpad::ContactTest().ring_px * std::pow(double(width) / first_px, 2);
     DepthMeter meter(sensor, reference, free_mm);
     depths_mm.clear();
     for (const cv::Mat& frame : frames) {
       depths_mm.push_back(meter(frame));
     }
     try {
-      pad = fit_contact_threshold(sensor.camera, depths_mm, ring);
+      pad = fit_contact_threshold(sensor.camera, depths_mm, found.ring_px);
     } catch (const fingerpad::parameter_error&) {  // all noise
       if (width + width / 8 * 2 > 2 * first_px) {
         throw;

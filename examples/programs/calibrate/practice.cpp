@@ -106,7 +106,7 @@ cv::Mat_<cv::Vec3f> rendered(const DepthMap& depth_mm) {
       if (std::isfinite(depth)) {
         const auto ray = ray_at_pixel(practice_camera, double(i), double(j));
         const auto colour =
-            colour_at_depth(practice_fluid, pencil_of(practice_camera, ray), 140.0,
+            colour_at_depth(practice_fluid, ray, 140.0,
                             0.044 - 0.00001 * ray.plate_rho_mm * ray.plate_rho_mm, depth);
         frame(i, j) =
             cv::Vec3f(4, static_cast<float>(colour.green), static_cast<float>(colour.red));

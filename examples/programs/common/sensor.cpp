@@ -291,8 +291,7 @@ Contact read_contact(const Section& root) {
   if (section.has("depth_noise_mm")) {
     contact.depth_noise_mm = section.positive("depth_noise_mm");
   }
-  section.check(
-      [&] { fingerpad::require(fingerpad::CurvatureRing{.radius_px = contact.ring_px}); });
+  section.check([&] { fingerpad::require(fingerpad::ContactTest{.ring_px = contact.ring_px}); });
   return contact;
 }
 

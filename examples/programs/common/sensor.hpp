@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "common/images.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/dots/side_dots.hpp"
 #include "fingerpad/force/look_up.hpp"
-#include "fingerpad/image/curvature.hpp"
 #include "fingerpad/optics/camera.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 
@@ -68,7 +68,7 @@ struct ForceLookUp {
 /// What `calibrate contact` found in frames of the free pad.
 struct Contact {
   double threshold_per_mm = 0;
-  double ring_px = fingerpad::CurvatureRing().radius_px;
+  double ring_px = fingerpad::ContactTest().ring_px;
   std::optional<double> depth_noise_mm = {};  ///< standard deviation of a smoothed depth
 };
 

@@ -47,10 +47,9 @@ cv::Mat_<cv::Vec3f> ideal_frame(const replay::Sensor& sensor,
         brightness *= lighting.dot_share;
       }
       const double scattering = lighting.scattering * (1 - 0.05 * (1 - std::exp(-share * share)));
-      const auto pencil = fingerpad::pencil_of(sensor.camera, ray);
-      const auto colour = fingerpad::colour_at_depth(fluid, pencil, brightness, scattering, depth);
+      const auto colour = fingerpad::colour_at_depth(fluid, ray, brightness, scattering, depth);
       const double blue = lighting.blue_share * brightness *
-                          std::exp(-2 * fluid.c_green_per_mm * pencil.path_factor * depth);
+                          std::exp(-2 * fluid.c_green_per_mm * ray.path_factor * depth);
       pixel += weight * cv::Vec3f(static_cast<float>(blue), static_cast<float>(colour.green),
                                   static_cast<float>(colour.red));
     }

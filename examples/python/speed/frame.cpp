@@ -13,6 +13,7 @@
 
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/depth.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 
 namespace {
 

@@ -65,12 +65,13 @@ template <scalar S = float,
           class T = std::conditional_t<std::is_same_v<S, float>, double, S>>
 ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
                                       const Frames& free_mm,
-                                      const CurvatureRing& ring = {}) {
+                                      double ring_px = 25,
+                                      int directions = 18) {
   const char* const owner = "fit_contact_threshold";
   expects(std::size(free_mm) > 0, owner, "number of frames", 0LL, ">= 1");
   const auto first = as_view(*std::begin(free_mm));
   const Index rows = first.rows(), cols = first.cols();
-  CurvatureMap<S> map(camera, rows, cols, ring);
+  CurvatureMap<S> map(camera, rows, cols, ring_px, directions);
   std::vector<S> curvature(static_cast<std::size_t>(rows * cols));
   std::vector<T> known;
   std::vector<detail::Scatter<T>> pixels(curvature.size());

@@ -41,7 +41,7 @@ inline namespace v0 {
 /// samples, too.
 template <scalar S = double>
 struct DepthSample {
-  Pencil<S> pencil;    ///< of the pixel
+  Ray<S> ray;          ///< of the pixel
   Point2<S> plate_mm;  ///< where its ray meets the plate, from the axis
   S depth_mm;          ///< l along the ray, >= 0
   Colour<S> colour;    ///< grey levels, > 0
@@ -50,7 +50,7 @@ struct DepthSample {
 
 template <scalar S>
 std::string check(const DepthSample<S>& s) {
-  return check("DepthSample", {{"pencil.path_factor", s.pencil.path_factor, at_least(2)},
+  return check("DepthSample", {{"ray.path_factor", s.ray.path_factor, at_least(2)},
                                {"plate_mm.x", s.plate_mm.x, finite_number},
                                {"plate_mm.y", s.plate_mm.y, finite_number},
                                {"depth_mm", s.depth_mm, not_negative},
@@ -68,8 +68,7 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
                             const Colour<S>& colour,
                             const S& weight = S(1)) {
   const Point3<S> at = point_at(camera, row, col, S(0));
-  return {
-      pencil_of(camera, ray_at_pixel(camera, row, col)), {at.x, at.y}, depth_mm, colour, weight};
+  return {ray_at_pixel(camera, row, col), {at.x, at.y}, depth_mm, colour, weight};
 }
 
 /// The fluid, the light and their uncertainty. Parameters are in the order c_red, delta, and the
@@ -100,7 +99,7 @@ struct [[nodiscard]] AbsorptionFit {
     Absorption<S> here = fluid;
     here.kappa = light.kappa.at(s.plate_mm);
     const auto [f, slope] =
-        depth_equation(here, s.pencil, light.scattering.at(s.plate_mm), s.colour, s.depth_mm);
+        depth_equation(here, s.ray, light.scattering.at(s.plate_mm), s.colour, s.depth_mm);
     return -f / slope;
   }
 };
@@ -110,12 +109,12 @@ namespace detail {
 /// dW/dc by parts: l (l + h_m)(l + h_s) exp(-c k l) less the integral of z (2 z + h_m + h_s)
 /// exp(-c k z).
 template <scalar S>
-S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
+S scattered_light_per_absorption(const S& depth_mm, const S& c_per_mm, const Ray<S>& ray) {
   using std::exp;
-  const S t = c_per_mm * (pencil.path_factor * depth_mm);
+  const S t = c_per_mm * (ray.path_factor * depth_mm);
   const ExponentialMoments<S> m = exponential_moments(t);
-  const S& h_m = pencil.height.meridional_mm;
-  const S& h_s = pencil.height.sagittal_mm;
+  const S& h_m = ray.meridional_mm;
+  const S& h_s = ray.sagittal_mm;
   const S end = (depth_mm + h_m) * (depth_mm + h_s) * exp(-t);
   return depth_mm * (end - depth_mm * ((h_m + h_s) * m.first + S(2) * depth_mm * m.second));
 }
@@ -138,8 +137,8 @@ struct AbsorptionPoint {
               bool flat = false) const {
     using std::exp;
     using Light = PadLight<S, Degree>;
-    const S path = s.pencil.path_factor * s.depth_mm;
-    const S w = flat ? S(1) : scattered_light(s.depth_mm, c_red, s.pencil);
+    const S path = s.ray.path_factor * s.depth_mm;
+    const S w = flat ? S(1) : scattered_light(s.depth_mm, c_red, s.ray);
     const S membrane = weight * s.colour.green * (flat ? S(1) : S(exp(delta * path)));
     const S x = s.plate_mm.x / scale_mm, y = s.plate_mm.y / scale_mm;
     S g = S(0);
@@ -152,7 +151,7 @@ struct AbsorptionPoint {
       g += weight * m * linear[k++];
     }
     if (!flat) {
-      rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.pencil));
+      rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.ray));
       rows.push_back(membrane * path);
     }
     rows.push_back(membrane);
@@ -185,7 +184,7 @@ class AbsorptionProblem {
     using std::sqrt;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const DepthSample<S>& s = samples_[i];
-      const S path = s.pencil.path_factor * s.depth_mm;
+      const S path = s.ray.path_factor * s.depth_mm;
       weights_[i] = s.weight / sqrt(exp(S(2) * p.delta * path) + square(p.linear[0]));
     }
   }
@@ -425,7 +424,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
     Absorption<S> here = fit.fluid;
     here.kappa = fit.light.kappa.at(s.plate_mm);
     is_lit = is_lit && g > S(0) && here.kappa > S(0);
-    squares += square(depth_equation(here, s.pencil, g, s.colour, s.depth_mm).first);
+    squares += square(depth_equation(here, s.ray, g, s.colour, s.depth_mm).first);
   }
   fit.residual_rms = sqrt(squares / S(static_cast<double>(samples.size())));
   fit.cause = !converged         ? cause::not_converged
@@ -458,7 +457,7 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
     }
   }
   const auto [f, slope] =
-      depth_equation(fit.fluid, at.pencil, g.at(at.plate_mm), at.colour, at.depth_mm);
+      depth_equation(fit.fluid, at.ray, g.at(at.plate_mm), at.colour, at.depth_mm);
   return sqrt(variance) / slope;
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -25,19 +26,6 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// The ball that is pressed in, and the scale of the image.
-template <scalar S = double>
-struct BallPress {
-  S ball_mm = S(4);             ///< radius of the ball; finite, > 0
-  S mm_per_px = S(5) / S(100);  ///< finite, > 0
-};
-/// Says which value is out of range; "" if none is.
-template <scalar S>
-std::string check(const BallPress<S>& press) {
-  return check("BallPress",
-               {{"ball_mm", press.ball_mm, positive}, {"mm_per_px", press.mm_per_px, positive}});
-}
-
 /// The law and its uncertainty.
 template <scalar S = double>
 struct [[nodiscard]] IntensityFit {
@@ -47,8 +35,7 @@ struct [[nodiscard]] IntensityFit {
   /// pixels are correlated: a block of 16 x 16 pixels counts as one.
   std::array<std::array<S, 3>, 3> covariance = detail::zero_matrix<S, 3>();
   S mean_error_mm = S(0);  ///< |depth by the law - depth of the ball|, over all presses
-  S max_error_mm = S(0);
-  S max_depth_mm = S(0);  ///< of the balls; beyond it the law is extrapolated
+  S max_depth_mm = S(0);   ///< of the balls; beyond it the law is extrapolated
 
   bool ok() const { return cause == nullptr; }
 };
@@ -60,7 +47,7 @@ template <scalar S>
 struct PressedBall {
   static constexpr std::size_t min_pixels = 30;  // more than there are unknowns
 
-  BallPress<S> ball;
+  S ball_mm, mm_per_px;  // radius of the ball, scale of the image
   Index cols;
   std::vector<S> log;                // ln(free / now), NaN: unknown
   Point2<S> axis_mm = {S(0), S(0)};  // from the first pixel
@@ -69,13 +56,13 @@ struct PressedBall {
 
   Point2<S> at(std::size_t k) const {
     const auto i = static_cast<Index>(k);
-    return {ball.mm_per_px * S(static_cast<double>(i % cols)),
-            ball.mm_per_px * S(static_cast<double>(i / cols))};
+    return {mm_per_px * S(static_cast<double>(i % cols)),
+            mm_per_px * S(static_cast<double>(i / cols))};
   }
 
   /// Uses the pixels where the ball is deeper than a tenth of its depth.
   void settle() {
-    const S radius_sq = square(ball.ball_mm) - square(ball.ball_mm - S(0.9) * depth_mm);
+    const S radius_sq = square(ball_mm) - square(ball_mm - S(0.9) * depth_mm);
     used.clear();
     for (std::size_t k = 0; k < log.size(); ++k) {
       if (is_finite(log[k]) && squared_norm(at(k) - axis_mm) < radius_sq) {
@@ -107,11 +94,11 @@ struct PressedBall {
       return S(0);  // the middle is not the darkest part
     }
     const S bend = S(-2) * q[3];
-    const S law_mm = S(1) / (ball.ball_mm * bend);
+    const S law_mm = S(1) / (ball_mm * bend);
     axis_mm = {q[1] / bend, q[2] / bend};
     depth_mm = law_mm * (q[0] - q[3] * squared_norm(axis_mm));
     settle();
-    return S(0) < depth_mm && depth_mm < ball.ball_mm ? law_mm : S(0);
+    return S(0) < depth_mm && depth_mm < ball_mm ? law_mm : S(0);
   }
 
   /// Calls visit(k, row) for the pixels used: the derivatives by x, y and depth of the ball and by
@@ -121,12 +108,12 @@ struct PressedBall {
     using std::sqrt;
     for (const std::size_t k : used) {
       const Point2<S> p = at(k) - axis_mm;
-      const S root_sq = square(ball.ball_mm) - squared_norm(p);
+      const S root_sq = square(ball_mm) - squared_norm(p);
       if (S(0) < root_sq) {
         const S root = sqrt(root_sq), l = log[k];
         const S by_law = pressed_depth_mm(IntensityLaw<S>{law[0], law[1], law[2]}, l);
         visit(k, std::array<S, 7>{-p.x / root, -p.y / root, S(-1), l, l * l, l * l * l,
-                                  by_law - (depth_mm - ball.ball_mm + root)});
+                                  by_law - (depth_mm - ball_mm + root)});
       }
     }
   }
@@ -214,29 +201,32 @@ bool fit_law(std::vector<PressedBall<S>>& presses, std::array<S, 3>& law, std::s
 }  // namespace detail
 
 /// The law a l (terms = 1), or with b l^2 and c l^3 (terms = 3), from a frame of the free pad and a
-/// container of frames, each with the ball pressed in. One press determines one constant; three
-/// need presses of different depths, or a deep one. Refuses bad parameters and, by its number,
-/// from 0, a press that has another size, another light beside the ball than the free pad, or no
-/// ball: a round darkest spot of at least 30 pixels (parameter_error). Not ok: no ball is as deep
-/// as 0.05 mm; a ball would be deeper than its radius; or the mean error exceeds a thirtieth of the
-/// largest depth, while a real gel leaves half of that. A ball of twice the radius, pressed half as
-/// deep, looks the same, so a diameter given as radius is not detected. Use double or long double:
-/// in float, sums over thousands of pixels keep only three digits. Allocates; O(50 presses pixels).
+/// container of frames, each with the ball pressed in. ball_mm: radius of the ball, > 0. One press
+/// determines one constant; three need presses of different depths, or a deep one. Refuses bad
+/// parameters and, by its number, from 0, a press that has another size, another light beside the
+/// ball than the free pad, or no ball: a round darkest spot of at least 30 pixels
+/// (parameter_error). Not ok: no ball is as deep as 0.05 mm; a ball would be deeper than its
+/// radius; or the mean error exceeds a thirtieth of the largest depth, while a real gel leaves half
+/// of that. A ball of twice the radius, pressed half as deep, looks the same, so a diameter given
+/// as radius is not detected. Use double or long double: in float, sums over thousands of pixels
+/// keep only three digits. Allocates; O(50 presses pixels).
 template <scalar S = double, grid Free, class Frames>
 IntensityFit<S> fit_intensity(const Free& free,
                               const Frames& pressed,
-                              const BallPress<S>& ball,
+                              const std::type_identity_t<S>& ball_mm,
+                              const std::type_identity_t<S>& mm_per_px,
                               int terms = 1,
                               const IntensityOptions& options = {}) {
   const char* const owner = "fit_intensity";
   expects(terms == 1 || terms == 3, owner, "terms", static_cast<long long>(terms), "1 or 3");
-  require(ball);
+  require(owner, {{"ball_mm", ball_mm, positive}, {"mm_per_px", mm_per_px, positive}});
   IntensityDepth<S> log_ratio(free, IntensityLaw<S>{S(1), S(0), S(0)}, options);
   const Index rows = log_ratio.rows(), cols = log_ratio.cols();
   std::vector<detail::PressedBall<S>> presses;
   std::array<S, 3> law = detail::zeros<S, 3>();
   for (const auto& frame : pressed) {
-    presses.push_back({ball, cols, std::vector<S>(static_cast<std::size_t>(rows * cols))});
+    presses.push_back(
+        {ball_mm, mm_per_px, cols, std::vector<S>(static_cast<std::size_t>(rows * cols))});
     const StridedView<S> log(presses.back().log.data(), rows, cols, cols);
     const S start_mm = log_ratio(frame, log) == FrameStatus::ok ? presses.back().start() : S(0);
     expects(S(0) < start_mm, owner, "press", static_cast<long long>(presses.size()) - 1,
@@ -265,7 +255,6 @@ IntensityFit<S> fit_intensity(const Free& free,
     press.for_contact(law, [&](std::size_t k, const std::array<S, 7>& equation) {
       const S error = equation[6], size = error < S(0) ? -error : error;
       fit.mean_error_mm += size;
-      fit.max_error_mm = (std::max)(fit.max_error_mm, size);
       pixels += S(1);
       const Index i = static_cast<Index>(k) / cols, j = static_cast<Index>(k) % cols;
       blocks[static_cast<std::size_t>(i / block_px * block_cols + j / block_px)] += error;
@@ -273,7 +262,7 @@ IntensityFit<S> fit_intensity(const Free& free,
     for (const S& sum : blocks) {
       blocks_sq += square(sum);
     }
-    too_deep = too_deep || !(press.depth_mm < ball.ball_mm);
+    too_deep = too_deep || !(press.depth_mm < ball_mm);
     fit.max_depth_mm = (std::max)(fit.max_depth_mm, press.depth_mm);
   }
   fit.mean_error_mm /= pixels;

@@ -28,7 +28,6 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/image/detail/pixel_rays.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
@@ -40,8 +39,9 @@ struct ContactTest {
   /// delta in the sources, > 0. Half the curvature of the free pad is a good choice: 1/40 per mm
   /// for the published pad of 20 mm radius. calibrate/contact.hpp measures it.
   double threshold_per_mm = 0.025;
-  double free_apex_mm = 13;  ///< height of the free pad, from which contact depth counts; finite
-  CurvatureRing ring = {};
+  double free_apex_mm = 13;   ///< height of the free pad, from which contact depth counts; finite
+  double ring_px = 25;        ///< radius of the ring of image/curvature.hpp, in [1, 1000]
+  int directions = 18;        ///< of its sections, in [1, 360]; time grows with it
   Index min_region_px = 200;  ///< smaller regions are dropped: noise makes specks of about half a
                               ///< ring's radius. >= 1; 1 drops none
   /// False: contact ends where the threshold does, as published. A ring that reaches beyond the
@@ -56,12 +56,12 @@ struct ContactTest {
 
 /// Says which value is out of range; "" if none is.
 inline std::string check(const ContactTest& test) {
-  const std::string refusal =
-      check("ContactTest", {{"threshold_per_mm", test.threshold_per_mm, positive},
-                            {"free_apex_mm", test.free_apex_mm, finite_number},
-                            {"min_region_px", test.min_region_px, at_least(1)},
-                            {"touching_gap_mm", test.touching_gap_mm, within(0, 1)}});
-  return refusal.empty() ? check(test.ring) : refusal;
+  return check("ContactTest", {{"threshold_per_mm", test.threshold_per_mm, positive},
+                               {"free_apex_mm", test.free_apex_mm, finite_number},
+                               {"ring_px", test.ring_px, within(1, 1000)},
+                               {"directions", test.directions, within(1, 360)},
+                               {"min_region_px", test.min_region_px, at_least(1)},
+                               {"touching_gap_mm", test.touching_gap_mm, within(0, 1)}});
 }
 
 /// The contact of a frame. Without contact, areas are 0 and all other values NaN.
@@ -90,7 +90,7 @@ struct [[nodiscard]] ContactResult {
 /// The contact region of depth maps of one size, computed in the scalar S.
 /// published/contact_region.hpp is the test as printed.
 /// A pixel without depth is never contact. A pixel whose ring is partly missing is judged by the
-/// remaining directions; if these are too few (ContactTest::ring) it is unknown. All contacts of a
+/// remaining directions; if these are fewer than half it is unknown. All contacts of a
 /// frame are compared with one free membrane, whose curvature is linear in the pixel.
 ///
 /// One object a thread. Bounded time and no allocation per frame; O(rows cols directions).
@@ -102,26 +102,28 @@ class ContactRegion {
   template <class CameraType = Camera<double>>
   ContactRegion(const CameraType& camera, Index rows, Index cols, const ContactTest& test = {})
       : test_(checked(camera, rows, cols, test)),
-        eye_{static_cast<double>(value(camera.center_x_px)),
-             static_cast<double>(value(camera.center_y_px)),
-             static_cast<double>(value(camera.pitch_mm)),
-             static_cast<double>(value(camera.pixel_aspect))},
+        pitch_mm_(static_cast<double>(value(camera.pitch_mm))),
+        pixel_aspect_(static_cast<double>(value(camera.pixel_aspect))),
         growth_per_mm_(static_cast<double>(value(growth_per_mm(camera)))),
-        ring_cols_(static_cast<Index>(std::ceil(test.ring.radius_px))),
-        ring_rows_(static_cast<Index>(std::ceil(test.ring.radius_px / eye_.pixel_aspect))),
+        ring_cols_(static_cast<Index>(std::ceil(test.ring_px))),
+        ring_rows_(static_cast<Index>(std::ceil(test.ring_px / pixel_aspect_))),
         spread_cols_((ring_cols_ + 1) / 3),
         spread_rows_((ring_rows_ + 1) / 3),
         image_{rows, cols, (std::max)({spread_cols_, spread_rows_, Index(1)})},
         regions_(image_),
-        curvature_(camera, rows, cols, test.ring),
+        curvature_(camera, rows, cols, test.ring_px, test.directions),
         statistic_(static_cast<std::size_t>(image_.size()), not_a_number<S>()),
         raw_(statistic_),
         mean_(statistic_),
         free_(statistic_) {
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
-        rays_.push_back(detail::mm_per_px(cast<double>(camera), static_cast<double>(i),
-                                          static_cast<double>(j)));
+        const auto seen = [&](double depth_mm) {
+          return point_at(cast<double>(camera), static_cast<double>(i), static_cast<double>(j),
+                          depth_mm);
+        };
+        const auto low = seen(0), high = seen(1);
+        rays_.push_back({{low.x, low.y}, {high.x - low.x, high.y - low.y}});
       }
     }
     for (const auto& corner : {point(0, 0, 0), point(rows - 1, 0, 0), point(0, cols - 1, 0),
@@ -169,8 +171,8 @@ class ContactRegion {
       if (test_.places_edge) {
         result.area_sd_mm2 += place_edge(depth, region);
       } else {
-        result.area_sd_mm2 += perimeter_mm(region, eye_.pitch_mm) * test_.ring.radius_px *
-                              eye_.pitch_mm / std::numbers::sqrt3;
+        result.area_sd_mm2 +=
+            perimeter_mm(region, pitch_mm_) * test_.ring_px * pitch_mm_ / std::numbers::sqrt3;
       }
     });
     write(marks, to);
@@ -289,7 +291,7 @@ class ContactRegion {
   /// Of a round region of the same area.
   double perimeter_mm(const detail::Regions::Region& region, double pixel_mm) const {
     return 2 * pixel_mm *
-           std::sqrt(std::numbers::pi * eye_.pixel_aspect * static_cast<double>(region.pixels()));
+           std::sqrt(std::numbers::pi * pixel_aspect_ * static_cast<double>(region.pixels()));
   }
 
   /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Its
@@ -312,13 +314,13 @@ class ContactRegion {
     std::nth_element(samples_.begin(), quarter, samples_.end());
     const S inside = (std::min)(*quarter, S(0));
     const double jump = outside / count - static_cast<double>(value(inside));
-    const double pixel_mm = eye_.pitch_mm * (1 + growth_per_mm_ * depth / count);
+    const double pixel_mm = pitch_mm_ * (1 + growth_per_mm_ * depth / count);
     const double patch_mm = pixel_mm * std::sqrt(static_cast<double>(region.pixels()) *
-                                                 eye_.pixel_aspect / std::numbers::pi);
-    const S share = S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm,
-                                                      test_.ring.radius_px * pixel_mm, patch_mm,
-                                                      static_cast<double>(spread_cols_) * pixel_mm)
-                               : 0.0);
+                                                 pixel_aspect_ / std::numbers::pi);
+    const S share =
+        S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm, test_.ring_px * pixel_mm,
+                                          patch_mm, static_cast<double>(spread_cols_) * pixel_mm)
+                   : 0.0);
     const auto within = [&](Index at) {
       const auto pixel = static_cast<std::size_t>(at);
       return mean_[pixel] < inside + share * (free_[pixel] - inside);
@@ -328,8 +330,7 @@ class ContactRegion {
 
     // across a straight edge, the ring's mean rises by 4 / pi of the jump per ring radius; its
     // noise moves stretches of the edge as long as the ring is wide, each by itself
-    const double ring_mm = test_.ring.radius_px * pixel_mm,
-                 edge_mm = perimeter_mm(region, pixel_mm);
+    const double ring_mm = test_.ring_px * pixel_mm, edge_mm = perimeter_mm(region, pixel_mm);
     const double gap_mm = std::sqrt(test_.touching_gap_mm / (3 * jump));
     const double moved_mm =
         (std::min)(free_sd_per_mm_ / jump * std::numbers::pi / 4, 1.0) * ring_mm;
@@ -339,10 +340,9 @@ class ContactRegion {
   }
 
   Point3<double> point(Index i, Index j, double depth_mm) const {
-    const auto& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
-    const double mm_per_px = ray.at_plate + ray.per_mm * depth_mm;
-    return {(static_cast<double>(j) - eye_.center_x_px) * mm_per_px,
-            (static_cast<double>(i) - eye_.center_y_px) * eye_.pixel_aspect * mm_per_px, depth_mm};
+    const Ray& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
+    const Point2<double> at = ray.on_plate_mm + depth_mm * ray.per_mm;
+    return {at.x, at.y, depth_mm};
   }
 
   /// Sums over the pixels in contact, each weighted with the area that it sees, projected on the
@@ -368,12 +368,14 @@ class ContactRegion {
           const bool known = marks(r, c) != Mark::unknown;
           return point(r, c, known ? static_cast<double>(depth_mm(r, c)) : depth);
         };
-        const auto across = seen(i, right) - seen(i, left), along = seen(down, j) - seen(up, j);
-        const auto& ray = rays_[static_cast<std::size_t>(i * image_.cols + j)];
-        const double span = static_cast<double>((right - left) * (down - up));
-        const double area = (across.x * along.y - across.y * along.x) / span;
-        const double mm_per_px = ray.at_plate + ray.per_mm * depth;
-        const double positive_area = area > 0 ? area : mm_per_px * mm_per_px * eye_.pixel_aspect;
+        const auto level = [&](Index r, Index c) { return point(r, c, depth); };
+        const auto area_of = [&](const auto& seen_at) {
+          const auto across = seen_at(i, right) - seen_at(i, left);
+          const auto along = seen_at(down, j) - seen_at(up, j);
+          return (across.x * along.y - across.y * along.x) /
+                 static_cast<double>((right - left) * (down - up));
+        };
+        const double area = area_of(seen), positive_area = area > 0 ? area : area_of(level);
         ++result.contact_px;
         result.area_mm2 += positive_area;
         moment += positive_area * point(i, j, depth);
@@ -396,8 +398,11 @@ class ContactRegion {
 
   static constexpr Index most = 2000;  // samples of a region
 
+  struct Ray {
+    Point2<double> on_plate_mm, per_mm;
+  };
   ContactTest test_;
-  OrthographicCamera<double> eye_;
+  double pitch_mm_, pixel_aspect_;
   double growth_per_mm_;
   Index ring_cols_, ring_rows_;      // the ring's radius in whole pixels
   Index spread_cols_, spread_rows_;  // a third of it smooths noise without moving the edge
@@ -407,7 +412,7 @@ class ContactRegion {
   double free_sd_per_mm_ = 0;  // of the free membrane's curvature about its plane
   std::vector<S> statistic_, raw_, mean_, free_;  // curvatures: clamped, plain, smoothed, plane
   detail::ReservedVector<S> samples_{2 * most};
-  std::vector<detail::MmPerPx<double>> rays_;
+  std::vector<Ray> rays_;
 };
 
 }  // namespace v0

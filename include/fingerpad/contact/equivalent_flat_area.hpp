@@ -24,7 +24,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
@@ -37,28 +36,12 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// Where the curves run around the contact.
-struct FlatAreaOptions {
-  double spacing_mm = 0.6;  ///< between sampled points, and between curves, on the plate, in
-                            ///< [0.05, 10]; noise of a curvature grows as 1 / spacing^2
-  double margin_mm = 0.8;   ///< from the contact to the first curve, in [0, 100]: the error of the
-                            ///< contact's edge plus half the smoothing window of the depths
-  double tension_share = 0.2;  ///< standard deviation of the tension inside the first curve from
-                               ///< that of (EA2), as a fraction of it, in [0, 1000]
-};
-
-/// Says which value is out of range; "" if none is.
-inline std::string check(const FlatAreaOptions& options) {
-  return check("FlatAreaOptions", {{"spacing_mm", options.spacing_mm, within(0.05, 10)},
-                                   {"margin_mm", options.margin_mm, within(0, 100)},
-                                   {"tension_share", options.tension_share, within(0, 1000)}});
-}
-
 /// The equivalent flat area; NaN if too little of the free membrane was seen.
 template <scalar S = double>
 struct [[nodiscard]] FlatAreaResult {
   S area_mm2 = not_a_number<S>();      ///< of the flat plate that would press as hard; F_z = p area
-  S variance_mm4 = not_a_number<S>();  ///< of the area, from the unknown tension
+  S variance_mm4 = not_a_number<S>();  ///< of the area, from the tension inside the first curve,
+                                       ///< which differs from that of (EA2) by a fifth (sd)
 
   bool ok() const { return is_finite(area_mm2); }
 };
@@ -93,33 +76,32 @@ struct FlatAreaPoint {
 }  // namespace detail
 
 /// Evaluates (EA2) on a depth map and its contact mask. The map is sampled on a lattice of points
-/// spacing_mm apart. A curve encloses all points within some distance of the contact. It takes part
-/// if at most one in twenty of its points lacks a curvature (no depth, steeper than 45 degrees, at
-/// the border of the image); these get the mean of the points beside the same curve. There is no
-/// answer with fewer than five curves, or if the pad does not curve outward around the contact.
+/// 0.6 mm apart on the plate; noise of a curvature grows as 1 / spacing^2. A curve encloses all
+/// points within some distance of the contact. The first one lies 0.8 mm from it, the error of the
+/// contact's edge plus half the smoothing window of the depths; the others follow 0.6 mm apart. A
+/// curve takes part if at most one in twenty of its points lacks a curvature (no depth, steeper
+/// than 45 degrees, at the border of the image); these get the mean of the points beside the same
+/// curve. There is no answer with fewer than five curves, or if the pad does not curve outward
+/// around the contact.
 ///
-/// One object a thread. Bounded time and no allocation per frame; O(pixels / step^2) with step =
-/// spacing_mm / pitch.
+/// One object a thread. Bounded time and no allocation per frame; O(points of the lattice).
 template <scalar S = double>
 class EquivalentFlatArea {
   static constexpr Index straight = 5, diagonal = 7;  // steps of the distance (Borgefors 1986)
   static constexpr std::size_t min_curves = 5;
+  static constexpr double spacing_mm = 0.6, margin_mm = 0.8, tension_share = 0.2;
 
  public:
   /// rows, cols in [1, 1e6]. Refuses bad parameters (parameter_error).
   template <class CameraType>
-  EquivalentFlatArea(const CameraType& camera,
-                     Index rows,
-                     Index cols,
-                     const FlatAreaOptions& options = {})
-      : options_(options), image_rows_(rows), image_cols_(cols) {
-    expects_grid_size("EquivalentFlatArea", rows, cols, 1);
+  EquivalentFlatArea(const CameraType& camera, Index rows, Index cols)
+      : image_rows_(rows), image_cols_(cols) {
+    expects_grid_size("EquivalentFlatArea", rows, cols);
     require(camera);
-    require(options);
     const double width_mm = static_cast<double>(value(camera.pitch_mm));
     const double height_mm = width_mm * static_cast<double>(value(camera.pixel_aspect));
     const auto step = [&](double pixel_mm) {
-      return (std::max)(Index(1), static_cast<Index>(std::lround(options.spacing_mm / pixel_mm)));
+      return (std::max)(Index(1), static_cast<Index>(std::lround(spacing_mm / pixel_mm)));
     };
     row_step_ = step(height_mm);
     col_step_ = step(width_mm);
@@ -128,8 +110,7 @@ class EquivalentFlatArea {
     const double step_mm =
         (static_cast<double>(row_step_) * height_mm + static_cast<double>(col_step_) * width_mm) /
         2;
-    margin_ = static_cast<Index>(
-        std::lround(static_cast<double>(straight) * options.margin_mm / step_mm));
+    margin_ = static_cast<Index>(std::lround(static_cast<double>(straight) * margin_mm / step_mm));
     const auto eye = cast<S>(camera);
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
@@ -169,7 +150,7 @@ class EquivalentFlatArea {
     const S area = area_without_flux();
     if (is_finite(area) && value(area) > 0) {
       result.area_mm2 = area;
-      result.variance_mm4 = square(S(options_.tension_share) * (curves_[0].area_mm2 - area));
+      result.variance_mm4 = square(S(tension_share) * (curves_[0].area_mm2 - area));
     }
     return result;
   }
@@ -278,7 +259,6 @@ class EquivalentFlatArea {
                                                  : not_a_number<S>();
   }
 
-  FlatAreaOptions options_;
   Index image_rows_, image_cols_;
   Index row_step_, col_step_;  // px between the points of the lattice
   Index rows_, cols_;          // of the lattice

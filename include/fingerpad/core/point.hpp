@@ -73,12 +73,6 @@ struct Point3 {
   }
 };
 
-/// The same point in another scalar.
-template <scalar To, scalar From>
-constexpr Point3<To> cast(const Point3<From>& p) {
-  return {To(p.x), To(p.y), To(p.z)};
-}
-
 /// |a|^2.
 template <class Point>
 constexpr auto squared_norm(const Point& a) -> decltype(dot(a, a)) {

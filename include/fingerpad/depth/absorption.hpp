@@ -11,9 +11,12 @@
 //   W(l) = c_red Int_0^l (z + h_m)(z + h_s) exp(-c_red k z) dz
 //
 // B is the membrane's brightness in green at depth 0, which depends on its inclination, colour and
-// dots. The second equation does not contain B, so these do not affect the depth. Colours are grey
-// levels, lengths mm, g grey levels per mm^2.
+// dots. The second equation does not contain B, so these do not affect the depth: its root is the
+// depth, by newton_depth() in any scalar. Whole frames go by polynomials, depth/depth.hpp. Colours
+// are grey levels, lengths mm, g grey levels per mm^2.
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -48,19 +51,6 @@ std::string check(const Absorption<S>& fluid) {
 template <scalar To, scalar From>
 Absorption<To> cast(const Absorption<From>& f) {
   return {To(f.c_red_per_mm), To(f.c_green_per_mm), To(f.kappa), To(f.max_depth_mm)};
-}
-
-/// The pencil of light that reaches one pixel.
-template <scalar S = double>
-struct Pencil {
-  S path_factor;            ///< k = 1 + 1/cos(phi_fluid), >= 2
-  PencilHeights<S> height;  ///< of the points from which the light appears to come
-};
-
-/// The pencil of a ray.
-template <scalar S>
-Pencil<S> pencil_of(const Camera<S>& camera, const Ray<S>& ray) {
-  return {ray.path_factor, pencil_heights(camera, ray)};
 }
 
 namespace detail {
@@ -106,22 +96,21 @@ ExponentialMoments<S> exponential_moments(const S& t) {
 /// form Q1 (1 - E) + Q2 loses all digits to cancellation at small c l; this sum has positive terms
 /// only.
 template <scalar S>
-S scattered_light(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
-  const S t = c_per_mm * (pencil.path_factor * depth_mm);
+S scattered_light(const S& depth_mm, const S& c_per_mm, const Ray<S>& ray) {
+  const S t = c_per_mm * (ray.path_factor * depth_mm);
   const auto m = detail::exponential_moments(t);
-  const S& h_m = pencil.height.meridional_mm;
-  const S& h_s = pencil.height.sagittal_mm;
+  const S& h_m = ray.meridional_mm;
+  const S& h_s = ray.sagittal_mm;
   const S sum = h_m * h_s * m.zeroth + depth_mm * ((h_m + h_s) * m.first + depth_mm * m.second);
   return c_per_mm * depth_mm * sum;
 }
 
 /// dW/dl = c (l + h_m)(l + h_s) exp(-c k l), in mm.
 template <scalar S>
-S scattered_light_slope(const S& depth_mm, const S& c_per_mm, const Pencil<S>& pencil) {
+S scattered_light_slope(const S& depth_mm, const S& c_per_mm, const Ray<S>& ray) {
   using std::exp;
-  const S decay = exp(-(c_per_mm * (pencil.path_factor * depth_mm)));
-  return c_per_mm * (depth_mm + pencil.height.meridional_mm) *
-         (depth_mm + pencil.height.sagittal_mm) * decay;
+  const S decay = exp(-(c_per_mm * (ray.path_factor * depth_mm)));
+  return c_per_mm * (depth_mm + ray.meridional_mm) * (depth_mm + ray.sagittal_mm) * decay;
 }
 
 /// Red and green of one pixel, in grey levels.
@@ -135,13 +124,13 @@ struct Colour {
 /// depth l >= 0, in a fluid that scatters g (grey levels per mm^2).
 template <scalar S>
 Colour<S> colour_at_depth(const Absorption<S>& fluid,
-                          const Pencil<S>& pencil,
+                          const Ray<S>& ray,
                           const S& brightness,
                           const S& scattering,
                           const S& depth_mm) {
   using std::exp;
-  const S path = pencil.path_factor * depth_mm;
-  const S scattered = scattering * scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
+  const S path = ray.path_factor * depth_mm;
+  const S scattered = scattering * scattered_light(depth_mm, fluid.c_red_per_mm, ray);
   const S green = brightness * exp(-(fluid.c_green_per_mm * path));
   const S red = (brightness * exp(-(fluid.c_red_per_mm * path)) + scattered) / fluid.kappa;
   return {red, green};
@@ -152,17 +141,96 @@ Colour<S> colour_at_depth(const Absorption<S>& fluid,
 /// published quotient f(l) = g - F/W, which is 0/0 at l = 0 and overflows at large l.
 template <scalar S>
 std::pair<S, S> depth_equation(const Absorption<S>& fluid,
-                               const Pencil<S>& pencil,
+                               const Ray<S>& ray,
                                const S& scattering,
                                const Colour<S>& colour,
                                const S& depth_mm) {
   using std::exp;
-  const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * pencil.path_factor;
+  const S delta_k = (fluid.c_green_per_mm - fluid.c_red_per_mm) * ray.path_factor;
   const S membrane = colour.green * exp(delta_k * depth_mm);
-  const S w = scattered_light(depth_mm, fluid.c_red_per_mm, pencil);
-  const S w_slope = scattered_light_slope(depth_mm, fluid.c_red_per_mm, pencil);
+  const S w = scattered_light(depth_mm, fluid.c_red_per_mm, ray);
+  const S w_slope = scattered_light_slope(depth_mm, fluid.c_red_per_mm, ray);
   return {membrane - fluid.kappa * colour.red + scattering * w,
           membrane * delta_k + scattering * w_slope};
+}
+
+/// The outcome at a pixel. If the status is not `ok`, the depth is NaN; it is never clamped.
+enum class PixelStatus : std::uint8_t {
+  ok = 0,            ///< the depth is valid
+  below_range = 1,   ///< the colours correspond to a depth below 0
+  above_range = 2,   ///< the colours correspond to a depth above max_depth_mm
+  not_a_number = 3,  ///< a colour is NaN or infinite
+  dark = 4,          ///< a colour is at or below the dark limit
+  saturated = 5,     ///< a colour is at or above the saturation limit
+  outside_pad = 6,   ///< the reference has no depth or no g > 0 here
+};
+inline constexpr std::size_t pixel_status_count = 7;
+
+/// A depth and whether it may be used; depth_mm is NaN unless the status is ok.
+template <scalar S>
+struct DepthRoot {
+  S depth_mm;
+  PixelStatus status;
+};
+
+namespace detail {
+
+/// Whether there is a root in [0, max_depth] (ok), and if not, why. F rises, so its signs at both
+/// ends decide.
+template <scalar S>
+PixelStatus range_of_root(const Absorption<S>& fluid,
+                          const Ray<S>& ray,
+                          const S& scattering,
+                          const Colour<S>& colour) {
+  const S at_zero = colour.green - fluid.kappa * colour.red;
+  if (!is_finite(at_zero) || !is_finite(scattering) || !(value(scattering) > 0)) {
+    return PixelStatus::not_a_number;
+  }
+  if (value(at_zero) > 0) {
+    return PixelStatus::below_range;
+  }
+  const S at_end = depth_equation(fluid, ray, scattering, colour, fluid.max_depth_mm).first;
+  return value(at_end) < 0 ? PixelStatus::above_range : PixelStatus::ok;
+}
+
+}  // namespace detail
+
+/// Newton's method on F from `start_mm` (the depth in the last frame, or 0). Every step stays
+/// inside the bracket around the root that the signs of F give. Converges to the roundoff of F:
+/// <= 1e-12 mm in double for depths up to 14 mm. Five steps are typical from 0, four from the last
+/// frame; 60 at most. A dual number gets the exact derivative of the root with respect to whatever
+/// is seeded.
+template <scalar S>
+DepthRoot<S> newton_depth(const Absorption<S>& fluid,
+                          const Ray<S>& ray,
+                          const S& scattering,
+                          const Colour<S>& colour,
+                          const S& start_mm = S(0)) {
+  using Real = scalar_real_t<S>;
+  const PixelStatus range = detail::range_of_root(fluid, ray, scattering, colour);
+  if (range != PixelStatus::ok) {
+    return {not_a_number<S>(), range};
+  }
+  S low = S(0);
+  S high = fluid.max_depth_mm;
+  const Real enough = 16 * epsilon<S>() * value(high);
+  const bool start_is_inside = value(start_mm) > 0 && value(start_mm) < value(high);
+  S depth = start_is_inside ? start_mm : low;
+  for (int i = 0; i < 60; ++i) {
+    const auto [f, slope] = depth_equation(fluid, ray, scattering, colour, depth);
+    (value(f) < 0 ? low : high) = depth;
+    S next = depth - f / slope;
+    // Written so that a NaN step (no slope) also falls back on the bracket.
+    if (!(value(next) >= value(low) && value(next) <= value(high))) {
+      next = (low + high) / S(2);
+    }
+    const Real step = value(next) - value(depth);
+    depth = next;
+    if (step <= enough && -step <= enough) {
+      break;
+    }
+  }
+  return {depth, PixelStatus::ok};
 }
 
 }  // namespace v0

@@ -6,8 +6,8 @@
 // law is in depth/absorption.hpp; published and corrected forms in docs/errata.md, E001-E007;
 // published/depth.hpp is the method as printed.
 //
-// Once per sensor: fit_reference() on a frame of the free pad. Per frame: the colours are averaged
-// over a window (depth/detail/colour_rows.hpp) and the depth equation is solved per pixel
+// Once per sensor: depth/fit_reference.hpp on a frame of the free pad. Per frame: the colours are
+// averaged over a window (depth/detail/colour_rows.hpp) and the depth equation is solved per pixel
 // (depth/detail/depth_polynomial.hpp). The depth is the height z of the membrane above the plate in
 // mm, where the pixel's refracted ray meets it; point_at() of optics/camera.hpp turns it into a
 // point. depth/neighbour_light.hpp optionally compensates light from neighbouring membrane.
@@ -25,11 +25,9 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/status.hpp"
-#include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/colour_rows.hpp"
 #include "fingerpad/depth/detail/depth_polynomial.hpp"
-#include "fingerpad/depth/detail/pad.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -50,9 +48,9 @@ inline std::string check(const DepthOptions& options) {
   return refusal.empty() && options.scale ? check(*options.scale) : refusal;
 }
 
-/// The outcome of a frame, or of a band of its rows. not_of_this_pad: depths were written, but the
-/// rim of the pad is more than 5 % lighter or darker than in the reference, or mostly dark or
-/// saturated: another lamp or gain, an aged membrane, another pixel layout. Take a new reference.
+/// The outcome of a frame. not_of_this_pad: depths were written, but the rim of the pad is more
+/// than 5 % lighter or darker than in the reference, or mostly dark or saturated: another lamp or
+/// gain, an aged membrane, another pixel layout. Take a new reference.
 struct [[nodiscard]] DepthResult {
   FrameStatus status = FrameStatus::refused;
   Index pad_pixels = 0;  ///< pixels with a depth and g > 0 in the reference
@@ -60,26 +58,6 @@ struct [[nodiscard]] DepthResult {
 
   bool ok() const { return status == FrameStatus::ok; }
   Index valid_pixels() const { return count[static_cast<std::size_t>(PixelStatus::ok)]; }
-
-  /// Merges the result of another band of the same frame into this one.
-  void add(const DepthResult& band) {
-    for (std::size_t k = 0; k < count.size(); ++k) {
-      count[k] += band.count[k];
-    }
-    rim_.add(band.rim_);
-    judge(status == FrameStatus::refused || band.status == FrameStatus::refused);
-  }
-
- private:
-  template <scalar>
-  friend class DepthEstimator;
-
-  void judge(bool refused) {
-    status = refused              ? FrameStatus::refused
-             : rim_.has_changed() ? FrameStatus::not_of_this_pad
-                                  : FrameStatus::ok;
-  }
-  detail::RimLight rim_;
 };
 
 /// Computes the depth of every pixel of a frame, in float or double. A call allocates nothing and
@@ -119,35 +97,23 @@ class DepthEstimator {
   /// Depth of a frame in mm from its red and green channels; NaN where there is none.
   template <grid Red, grid Green, class Depth>
   DepthResult operator()(const Red& red, const Green& green, Depth&& depth_mm) {
-    return band(0, rows_, red, green, depth_mm, nullptr);
+    return (*this)(red, green, depth_mm, nullptr);
   }
 
-  /// The same, with a PixelStatus per pixel.
+  /// The same, with a PixelStatus per pixel, unless `status` is nullptr.
   template <grid Red, grid Green, class Depth, class Status>
   DepthResult operator()(const Red& red, const Green& green, Depth&& depth_mm, Status&& status) {
-    detail::writes_to<Status, PixelStatus>();
-    return band(0, rows_, red, green, depth_mm, status);
-  }
-
-  /// Only rows [first, last) of the frame, for threads that share a frame, each with a copy of the
-  /// estimator. The depths are bit for bit those of a whole frame. A status of nullptr is not
-  /// written.
-  template <grid Red, grid Green, class Depth, class Status>
-  DepthResult band(Index first,
-                   Index last,
-                   const Red& red,
-                   const Green& green,
-                   Depth&& depth_mm,
-                   Status&& status) {
+    constexpr bool has_status = !std::is_null_pointer_v<std::remove_cvref_t<Status>>;
     detail::writes_to<Depth, S>();
+    if constexpr (has_status) {
+      detail::writes_to<Status, PixelStatus>();
+    }
     static_assert(!detail::has_channels<cell_t<Red>> && !detail::has_channels<cell_t<Green>>,
                   "a colour image is not a channel: pass fingerpad::channel<T>(image, c) of it");
     static_assert(std::is_same_v<cell_t<Red>, cell_t<Green>>,
                   "red and green have different types of cell");
-    constexpr bool has_status = !std::is_null_pointer_v<std::remove_cvref_t<Status>>;
     DepthResult result;
-    if (!(has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status) &&
-          0 <= first && first <= last && last <= rows_)) {
+    if (!(has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status))) {
       return result;
     }
     const GreyScale scale = scale_ ? *scale_ : grey_scale_of<cell_t<Red>>();
@@ -157,12 +123,9 @@ class DepthEstimator {
     result.pad_pixels = pad_pixels_;
     const auto pad_red = detail::crop(from_red, pad_);
     const auto pad_green = detail::crop(from_green, pad_);
-    const Index pad_end = pad_.row + pad_.rows;
-    if (first < pad_end && pad_.row < last) {
-      colours_.start(pad_red, pad_green, scale, (std::max)(first - pad_.row, Index(0)));
-    }
-    for (Index i = first; i < last; ++i) {
-      if (i >= pad_.row && i < pad_end) {
+    colours_.start(pad_red, pad_green, scale);
+    for (Index i = 0; i < rows_; ++i) {
+      if (i >= pad_.row && i < pad_.row + pad_.rows) {
         colours_.next(pad_red, pad_green, scale, red_.data() + pad_.col, green_.data() + pad_.col);
       }
       invert(i, from_red, from_green, scale, result.count);
@@ -171,8 +134,8 @@ class DepthEstimator {
         detail::store_row(status_.data(), as_view(status), i);
       }
     }
-    result.rim_ = rim_.light(first, last, from_red, from_green, scale);
-    result.judge(false);
+    result.status = rim_.has_changed(from_red, from_green, scale) ? FrameStatus::not_of_this_pad
+                                                                  : FrameStatus::ok;
     return result;
   }
 

@@ -3,28 +3,51 @@
 #pragma once
 // The reference of the depth model, a set of planes over the image: the depth of the free pad, how
 // strongly the fluid scatters light there, g(x, y), and the gain of red, kappa(x, y) / kappa
-// (depth/pad_light.hpp). fit_reference() finds them from one frame of the free pad, whose shape is
-// known; calibrate/depth.hpp finds them from presses, too.
+// (depth/pad_light.hpp). depth/fit_reference.hpp finds them from one frame of the free pad.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <numbers>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/pad_light.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
+
+/// Relation of stored intensities to grey levels 0..255, and the limits beyond which they carry no
+/// information. A pixel counts only if both its channels lie strictly between the two limits.
+struct GreyScale {
+  double units_per_level = 1;  ///< stored units in one grey level: 1 for 8 bit, 256 for 16 bit
+  double dark = 0;             ///< in stored units
+  double saturated = 255;      ///< in stored units
+
+  /// Whether an intensity carries information. False for NaN.
+  template <scalar S>
+  constexpr bool counts(const S& x) const {
+    return value(x) > scalar_real_t<S>(dark) && value(x) < scalar_real_t<S>(saturated);
+  }
+};
+
+/// Says which value is out of range; "" if none is. A scale has at most the levels of 8 bit.
+inline std::string check(const GreyScale& scale) {
+  const Range in_levels{.min = scale.dark, .max = 256 * scale.units_per_level, .above_min = true};
+  return check("GreyScale", {{"units_per_level", scale.units_per_level, positive},
+                             {"dark", scale.dark, finite_number},
+                             {"saturated", scale.saturated, in_levels}});
+}
+
+/// The scale of a cell type: 16-bit images hold 256 times the grey level, all others the grey
+/// level.
+template <class Cell>
+constexpr GreyScale grey_scale_of() {
+  return std::is_same_v<Cell, std::uint16_t> ? GreyScale{256, 0, 255 * 256} : GreyScale{};
+}
 
 /// The free pad, as the depth estimator needs it. Planes have rows x cols elements.
 template <scalar S>
@@ -51,70 +74,14 @@ struct DepthReference {
 
 namespace detail {
 
-/// Shape of the free pad, to detect mistakes.
-struct FreePadShape {
-  double pixels = 0;
-  double deepest_mm = 0;  ///< of the depths up to max_depth_mm
-  double at_zero = 0;     ///< pixels at depth 0
-  double too_deep = 0;    ///< share of the pixels in their middle that lie beyond max_depth_mm
-  double off_axis = 0;  ///< distance of their centroid from the optical axis, in radii of a disc of
-                        ///< as many pixels; 0 if part of the pad is not seen
-};
-
-/// `depth_mm` holds doubles.
-template <scalar C, class Depth>
-FreePadShape shape_of_free_pad(const Camera<C>& camera,
-                               double max_depth_mm,
-                               const Depth& depth_mm) {
-  const auto center_x_px = static_cast<double>(value(camera.center_x_px));
-  const auto center_y_px = static_cast<double>(value(camera.center_y_px));
-  const auto aspect = static_cast<double>(value(camera.pixel_aspect));
-  const Index rows = depth_mm.rows(), cols = depth_mm.cols();
-  FreePadShape shape;
-  double sum_x = 0, sum_y = 0;
-  bool reaches_border = false;
-  each_pixel(rows, cols, [&](Index i, Index j) {
-    const double l = depth_mm(i, j);
-    if (is_finite(l) && l >= 0) {
-      shape.pixels += 1;
-      shape.at_zero += l == 0 ? 1 : 0;
-      shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
-      sum_x += static_cast<double>(j) - center_x_px;
-      sum_y += (static_cast<double>(i) - center_y_px) * aspect;
-      reaches_border = reaches_border || i == 0 || j == 0 || i + 1 == rows || j + 1 == cols;
+/// Calls visit(row, col) for every pixel.
+template <class Visit>
+void each_pixel(Index rows, Index cols, const Visit& visit) {
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      visit(i, j);
     }
-  });
-  const double radius_sq = shape.pixels * aspect / std::numbers::pi;
-  double middle = 0;
-  each_pixel(rows, cols, [&](Index i, Index j) {
-    const double x = static_cast<double>(j) - center_x_px - sum_x / shape.pixels;
-    const double y = (static_cast<double>(i) - center_y_px) * aspect - sum_y / shape.pixels;
-    if (depth_mm(i, j) >= 0 && x * x + y * y <= radius_sq / 16) {
-      middle += 1;
-      shape.too_deep += depth_mm(i, j) > max_depth_mm ? 1 : 0;
-    }
-  });
-  shape.too_deep = middle > 0 ? shape.too_deep / middle : 0;
-  if (!reaches_border && shape.pixels >= 100) {  // else there may be no pad at all
-    shape.off_axis = std::hypot(sum_x, sum_y) / (shape.pixels * std::sqrt(radius_sq));
   }
-  return shape;
-}
-
-/// Refuses shapes that no free pad has, and names the likely mistake.
-inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
-  constexpr const char* owner = "fit_reference";
-  if (shape.pixels == 0) {
-    return;  // the fit reports it
-  }
-  expects(shape.too_deep <= 0.5, owner, "share of the pad's middle beyond max_depth_mm",
-          shape.too_deep, "<= 0.5: raise max_depth_mm, or give mm");
-  expects(shape.deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm",
-          shape.deepest_mm, ">= a tenth of max_depth_mm: give mm, not m");
-  expects(shape.at_zero <= 0.1 * shape.pixels, owner, "share of pixels at depth 0",
-          shape.at_zero / shape.pixels, "<= 0.1: depth_mm must be NaN outside of the pad");
-  expects(shape.off_axis <= 0.25, owner, "distance of the pad's center from the axis, in radii",
-          shape.off_axis, "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
 }
 
 /// Depth up to which a pixel of the free pad counts as near the rim, where a press hardly moves it.
@@ -122,128 +89,85 @@ inline double rim_depth_mm(double deepest_mm) {
   return 0.2 * deepest_mm;
 }
 
-/// Refuses a light that no pad has. It holds one fluid; lamp and lens may fall to a third toward
-/// the rim, but are hardly darker on the axis than elsewhere, except where the membrane is pressed
-/// there. The limit of the residual, 5 grey levels, is what a poor camera leaves.
+/// `rows` x `cols` pixels from (row, col) on.
+struct PadArea {
+  Index row = 0;
+  Index col = 0;
+  Index rows = 0;
+  Index cols = 0;
+};
+
+/// The smallest area with all pixels that have a depth; empty if there are none.
 template <scalar S>
-void expects_light(const DepthReference<S>& reference, const S& on_axis) {
-  constexpr const char* owner = "fit_reference";
-  constexpr double infinite = (std::numeric_limits<double>::infinity)();
-  double min_g = infinite, max_g = -infinite, min_gain = infinite;
-  for (std::size_t k = 0; k < reference.scattering.size(); ++k) {
-    const auto g = static_cast<double>(value(reference.scattering[k]));
-    const auto gain = static_cast<double>(value(reference.red_gain[k]));
-    min_g = g < min_g ? g : min_g;  // not for NaN
-    max_g = g > max_g ? g : max_g;
-    min_gain = g == g && gain < min_gain ? gain : min_gain;
-  }
-  const double axis_share = static_cast<double>(value(on_axis)) / max_g;
-  const auto residual = static_cast<double>(value(reference.residual_rms));
-  expects(min_g > 0 && min_gain > 0, owner, "scattering of the fluid", min_g,
-          "> 0: are red and green exchanged, is depth_mm the height of the free pad, and are the "
-          "constants of absorption those of this fluid?");
-  expects(
-      min_g >= 0.3 * max_g, owner, "least scattering, as a share of the largest", min_g / max_g,
-      ">= 0.3: is the frame one of the free pad, and depth_mm its height along each pixel's ray?");
-  expects(axis_share >= 0.75, owner, "scattering on the axis, as a share of the largest",
-          axis_share, ">= 0.75: is the reference of the free pad?");
-  expects(residual <= 5, owner, "residual in grey levels", residual,
-          "<= 5: do red, green and depth_mm show the same free pad?");
+PadArea area_of(const DepthReference<S>& reference) {
+  Index first_row = reference.rows, last_row = 0, first_col = reference.cols, last_col = 0;
+  each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
+    if (reference.in_pad(i, j)) {
+      first_row = (std::min)(first_row, i);
+      last_row = i + 1;
+      first_col = (std::min)(first_col, j);
+      last_col = (std::max)(last_col, j + 1);
+    }
+  });
+  return {first_row, first_col, last_row - first_row, last_col - first_col};
 }
+
+/// A view of the area in a frame.
+template <class T>
+StridedView<T> crop(const StridedView<T>& frame, const PadArea& area) {
+  return region(frame, area.row, area.col, area.rows, area.cols);
+}
+template <class View>
+auto crop(const View& frame, const PadArea& area) {
+  return LazyView(area.rows, area.cols, [frame, area](Index i, Index j) -> decltype(auto) {
+    return frame(area.row + i, area.col + j);
+  });
+}
+
+/// At most 1024 pixels near the rim. A press hardly moves the rim, so that a change of its light
+/// shows another lamp or membrane.
+class Rim {
+ public:
+  template <scalar S>
+  explicit Rim(const DepthReference<S>& reference)
+      : reference_(static_cast<double>(reference.rim_green)) {
+    double deepest_mm = 0;
+    for (const S& l : reference.depth_mm) {
+      deepest_mm = l > S(deepest_mm) ? static_cast<double>(l) : deepest_mm;
+    }
+    std::vector<std::array<Index, 2>> rim;
+    each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
+      if (reference.depth(i, j) <= S(rim_depth_mm(deepest_mm))) {
+        rim.push_back({i, j});
+      }
+    });
+    for (std::size_t k = 0; reference_ > 0 && k < rim.size(); k += rim.size() / 1024 + 1) {
+      pixels_.push_back(rim[k]);
+    }
+  }
+
+  /// Whether green is more than 5 % lighter or darker than in the reference, or mostly dark or
+  /// saturated. Displaced printed dots change the light by 1 % with a thousand samples and by 4 %
+  /// with 64; fewer tell nothing.
+  template <class Red, class Green>
+  bool has_changed(const Red& red, const Green& green, const GreyScale& scale) const {
+    double lit = 0, sum = 0;
+    for (const auto& [row, col] : pixels_) {
+      const auto g = static_cast<double>(green(row, col));
+      if (scale.counts(static_cast<double>(red(row, col))) && scale.counts(g)) {
+        lit += 1;
+        sum += g / (scale.units_per_level * reference_);
+      }
+    }
+    const bool mostly_lit = 2 * lit >= static_cast<double>(pixels_.size());
+    return pixels_.size() >= 64 && !(mostly_lit && std::abs(sum / lit - 1) <= 0.05);
+  }
+
+ private:
+  double reference_;
+  std::vector<std::array<Index, 2>> pixels_;  // row and column
+};
 
 }  // namespace detail
-
-/// The reference for a light that is known, from one frame of the free pad and its depth along each
-/// pixel's ray in mm, NaN outside the pad. Where the light does not explain the frame (glare, dirt,
-/// a scratch), g is NaN and no depth is measured. Without `known` the light is fitted to the frame.
-/// O(rows cols); allocates.
-template <scalar S = float, scalar C, grid Red, grid Green, grid Depth>
-DepthReference<S> fit_reference(const Camera<C>& camera,
-                                const Absorption<C>& fluid,
-                                const Red& red,
-                                const Green& green,
-                                const Depth& depth_mm,
-                                const GreyScale& scale = grey_scale_of<cell_t<Red>>(),
-                                const PadLight<C>* known = nullptr) {
-  using std::sqrt;
-  const auto reds = as_view(red);
-  const auto greens = as_view(green);
-  const auto depths = as_view(depth_mm);
-  require(camera);
-  require(fluid);
-  require(scale);
-  expects(same_size(reds, greens) && same_size(reds, depths), "fit_reference", "rows of depth_mm",
-          static_cast<long long>(depths.rows()), "of the same size as the red and green image");
-  DepthReference<S> reference;
-  reference.rows = depths.rows();
-  reference.cols = depths.cols();
-  expects_grid_size("fit_reference", reference.rows, reference.cols);
-  for (const Index k : {0, 1, 2, 3}) {
-    const auto corner =
-        detail::ray_of(camera, k / 2 * (reference.rows - 1), k % 2 * (reference.cols - 1));
-    expects(is_finite(corner.tan_air), "fit_reference", "camera.distortion_k1",
-            static_cast<double>(value(camera.distortion_k1)),
-            "a distortion that does not fold back within the image");
-  }
-  const auto max_depth_mm = static_cast<double>(value(fluid.max_depth_mm));
-  const LazyView plain_depth(depths.rows(), depths.cols(), [&](Index i, Index j) {
-    return static_cast<double>(value(static_cast<C>(depths(i, j))));
-  });
-  const auto shape = detail::shape_of_free_pad(camera, max_depth_mm, plain_depth);
-  detail::expects_free_pad(shape, max_depth_mm);
-
-  C scale_mm = known != nullptr ? known->kappa.scale_mm : C(1);
-  detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
-    if (known == nullptr && plain_depth(i, j) > 0) {
-      const C rho_sq = squared_norm(detail::on_plate(camera, i, j));
-      scale_mm = value(scale_mm * scale_mm) < value(rho_sq) ? C(sqrt(rho_sq)) : scale_mm;
-    }
-  });
-  const Index width = detail::block_width(shape.pixels);
-  auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, scale, width, scale_mm);
-  const PadLight<C> light = known != nullptr ? *known : detail::fit_light(blocks, scale_mm);
-  if (known != nullptr) {
-    expects(!blocks.empty(), "fit_reference", "blocks of pixels with a known depth", 0, ">= 1");
-    detail::mark_unexplained(light, blocks);
-  }
-
-  double bright = 0, count = 0;
-  detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
-    const double l = plain_depth(i, j);
-    const bool inside = l >= 0 && l <= max_depth_mm;
-    const Point2<C> place = detail::on_plate(camera, i, j);
-    reference.depth_mm.push_back(inside ? S(static_cast<C>(depths(i, j))) : not_a_number<S>());
-    reference.scattering.push_back(inside ? S(light.scattering.at(place)) : not_a_number<S>());
-    reference.red_gain.push_back(inside ? S(light.kappa.at(place) / fluid.kappa)
-                                        : not_a_number<S>());
-    const C b = static_cast<C>(greens(i, j));
-    if (l >= 0 && l <= detail::rim_depth_mm(shape.deepest_mm) && scale.counts(b)) {
-      bright += static_cast<double>(value(b)) / scale.units_per_level;
-      count += 1;
-    }
-  });
-  reference.rim_green = S(count > 0 ? bright / count : 0);
-
-  C left_sq = C(0);
-  for (const detail::FreeBlock<C>& b : blocks) {
-    if (b.fits) {
-      left_sq = left_sq + square(b.residual(light));
-      reference.pixels_used += width * width;
-    }
-  }
-  // The square root has no derivative at 0.
-  const C mean_sq = left_sq * C(static_cast<double>(width * width)) /
-                    C(static_cast<double>((std::max)(reference.pixels_used, Index(1))));
-  reference.residual_rms = S(value(mean_sq) > 0 ? sqrt(mean_sq) : C(0));
-  detail::expects_light(reference, S(light.scattering.at({C(0), C(0)})));
-  for (const detail::FreeBlock<C>& b : blocks) {
-    detail::each_pixel(b.fits ? 0 : width, width, [&](Index i, Index j) {
-      reference.scattering[static_cast<std::size_t>((b.row + i) * reference.cols + b.col + j)] =
-          not_a_number<S>();
-    });
-  }
-  return reference;
-}
-
 }  // namespace v0
 }  // namespace fingerpad

@@ -12,11 +12,9 @@
 //
 // l must be the smoothed depth: atan of the gradient of a noisy depth measures the noise.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -76,8 +74,7 @@ double disc_pixels(const NeighbourLight<S>& light) {
   return static_cast<double>(pixels);
 }
 
-/// Sums of numbers S in [-1.6, 1.6]. In float and double they are rounded to whole steps and added
-/// as integers, whose sums are exact in any order, even if they wrap on the way. O(radius) a pixel.
+/// Sums over a disc, from the running sums along each row: two of them for each row of the disc.
 template <scalar S>
 class DiscSums {
  public:
@@ -86,72 +83,40 @@ class DiscSums {
         cols_(cols),
         margin_(light.radius_px + 1),
         half_widths_(disc_half_widths(light)),
-        sums_(static_cast<std::size_t>(rows * (cols + 2 * margin_)), Sum(0)) {
-    const double limit = sizeof(S) == 4 ? 0x1p30 : 0x1p62;
-    const double steps = limit / (1.6 * disc_pixels(light));
-    steps_ = S(std::exp2(std::floor(std::log2(steps))));  // a power of two: the unit is exact
-  }
-
-  /// Sets every cell to 0.
-  void clear() { std::fill(sums_.begin(), sums_.end(), Sum(0)); }
+        sums_(static_cast<std::size_t>(rows * (cols + 2 * margin_)), S(0)) {}
 
   /// Sets the cells of row i.
   void set(Index i, const S* cells) {
-    Sum* row = first_cell(i);
-    const S steps = steps_;
-    for_each_cell<S>(cols_, [=]<class V>(Index j) {
-      const V cell = load_cells<V, S>(cells + j);
-      if constexpr (by_integers) {
-        const V half = every_lane<V>(S(0.5)), in_steps = cell * steps;
-        const V rounded = in_steps + (in_steps < every_lane<V>(S(0)) ? -half : half);
-        store_cells<Sum>(row + j, std::bit_cast<Like<Sum, V>>(each_as<Like<Int, V>>(rounded)));
-      } else {
-        row[j] = cell;
-      }
-    });
-    for (Index j = 1; j < cols_; ++j) {
-      row[j] = row[j] + row[j - 1];
+    S* row = sums_.data() + i * (cols_ + 2 * margin_) + margin_;
+    S sum = S(0);
+    for (Index j = 0; j < cols_; ++j) {
+      sum = sum + cells[j];
+      row[j] = sum;
     }
-    std::fill_n(row + cols_, margin_, row[cols_ - 1]);
+    std::fill_n(row + cols_, margin_, sum);
   }
 
   /// to[j] = the sum over the disc around row i and column j. Cells beyond the image count as 0.
-  void sum(Index i, S* to) {
+  void sum(Index i, S* to) const {
     const Index reach = static_cast<Index>(half_widths_.size()) - 1, stride = cols_ + 2 * margin_;
     const Index top = (std::max)(-i, -reach), bottom = (std::min)(rows_ - 1 - i, reach);
     const Index* half_widths = half_widths_.data();
-    const Sum* row = first_cell(i);
-    const S unit = S(1) / steps_;
-    for_each_cell<Sum>(cols_, [=]<class V>(Index j) {
-      V sum = every_lane<V>(Sum(0));
+    const S* row = sums_.data() + i * stride + margin_;
+    for_each_cell<S>(cols_, [=]<class V>(Index j) {
+      V sum = every_lane<V>(S(0));
       for (Index y = top; y <= bottom; ++y) {
-        const Sum* center = row + y * stride + j;
+        const S* center = row + y * stride + j;
         const Index w = half_widths[y < 0 ? -y : y];
-        sum = sum + V(load_cells<V, Sum>(center + w) - load_cells<V, Sum>(center - w - 1));
+        sum = sum + V(load_cells<V, S>(center + w) - load_cells<V, S>(center - w - 1));
       }
-      if constexpr (by_integers) {
-        const auto in_steps = each_as<Like<S, V>>(std::bit_cast<Like<Int, V>>(sum));
-        store_cells<S>(to + j, Like<S, V>(unit * in_steps));
-      } else {
-        to[j] = sum;
-      }
+      store_cells<S>(to + j, sum);
     });
   }
 
  private:
-  static constexpr bool by_integers = std::same_as<S, float> || std::same_as<S, double>;
-  using Int = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
-  using Sum = std::conditional_t<by_integers, std::make_unsigned_t<Int>, S>;
-  /// T, or a vector with as many of it as V has lanes.
-  template <class T, class V>
-  using Like = lanes<T, lanes_in<V, T>>;
-
-  Sum* first_cell(Index row) { return sums_.data() + row * (cols_ + 2 * margin_) + margin_; }
-
   Index rows_, cols_, margin_;
-  S steps_ = S(1);
   std::vector<Index> half_widths_;
-  std::vector<Sum> sums_;  // along each row, with a margin on both sides
+  std::vector<S> sums_;  // along each row, with a margin on both sides
 };
 
 /// Slope along one axis: a central difference, one-sided beside a pixel that is not finite; NaN
@@ -198,9 +163,7 @@ NeighbourLight<S> sampled(const NeighbourLight<S>& light, int step) {
 /// Removes the effect of neighbouring light from depth maps, computed in the scalar S. Use one
 /// object a thread. A frame takes O(rows cols r) and allocates nothing.
 ///
-/// A pixel that is missing (not finite) in the frame but not in the reference is membrane that was
-/// not seen: it counts with the mean change of the disc's other pixels. A pixel that is missing in
-/// the reference is not membrane and adds nothing.
+/// A pixel that is missing (not finite) in the frame or in the reference adds nothing.
 template <scalar S = float>
 class NeighbourLightCompensation {
  public:
@@ -219,11 +182,8 @@ class NeighbourLightCompensation {
         cols_(as_view(reference_depth_mm).cols()),
         depth_mm_(static_cast<std::size_t>((rows_ + 2) * (cols_ + 2)), not_a_number<S>()),
         psi0_(static_cast<std::size_t>(rows_ * cols_), S(0)),
-        count_(psi0_),
         change_(rows_, cols_, light),
-        lost_(change_),
         row_(static_cast<std::size_t>(cols_), S(0)),
-        lost_row_(row_),
         sum_(row_) {
     load(as_view(reference_depth_mm));
     reference_mm_ = depth_mm_;
@@ -232,17 +192,10 @@ class NeighbourLightCompensation {
     }
     for (Index i = 0; i < rows_; ++i) {
       S* psi0 = psi0_.data() + i * cols_;
-      S* has_psi = row_.data();
-      detail::for_each_cell<S, lanes>(
+      detail::for_each_cell<S>(
           cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
-            const V psi = this->template psi_at<V>(i, j), one = detail::every_lane<V>(S(1));
-            detail::store_cells<S>(psi0 + j, psi);
-            detail::store_cells<S>(has_psi + j, V(detail::known<V>(psi) ? one : one - one));
+            detail::store_cells<S>(psi0 + j, this->template psi_at<V>(i, j));
           });
-      lost_.set(i, has_psi);
-    }
-    for (Index i = 0; i < rows_; ++i) {
-      lost_.sum(i, count_.data() + i * cols_);
     }
   }
 
@@ -258,7 +211,7 @@ class NeighbourLightCompensation {
     return each_row(depth_mm, std::forward<Out>(out), [this](Index i) {
       const S *l = padded_row(depth_mm_, i), *l0 = padded_row(reference_mm_, i);
       S* sum = sum_.data();
-      detail::for_each_cell<S, lanes>(
+      detail::for_each_cell<S>(
           cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
             const auto at = [j](const S* cells) { return detail::load_cells<V, S>(cells + j); };
             const V without = detail::without_light_of<V>(at(l), at(l0), at(sum), light_);
@@ -274,9 +227,6 @@ class NeighbourLightCompensation {
   }
 
  private:
-  /// Lanes of a vector; 1 unless inclination() and quick_exp() have a vector form for S.
-  static constexpr int lanes = std::same_as<S, float> ? detail::row_lanes<S> : 1;
-
   template <class View>
   static const NeighbourLight<S>& checked(const NeighbourLight<S>& light,
                                           const S& pitch_mm,
@@ -299,12 +249,11 @@ class NeighbourLightCompensation {
       return FrameStatus::refused;
     }
     load(from);
-    is_any_lost_ = false;
     for (Index i = 0; i < rows_; ++i) {
       compare(i);
     }
     for (Index i = 0; i < rows_; ++i) {
-      find_sum(i);
+      change_.sum(i, sum_.data());
       finish(i);
       detail::store_row(sum_.data(), to, i);
     }
@@ -337,43 +286,17 @@ class NeighbourLightCompensation {
     return V(detail::inclination(slope_sq) + (slope_sq - slope_sq));
   }
 
-  /// Sets the row of change_, 0 where psi is missing here or in the reference, and of lost_.
+  /// Sets the row of change_, 0 where psi is missing here or in the reference.
   void compare(Index row) {
     const S* psi0 = psi0_.data() + row * cols_;
-    S *to = row_.data(), *lost = lost_row_.data();
-    bool is_any_lost = false;
-    detail::for_each_cell<S, lanes>(
-        cols_, [ =, this, &is_any_lost ]<class V>(Index j) __attribute__((always_inline)) {
-          const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
-          const V before = detail::load_cells<V, S>(psi0 + j);
-          const V change = this->template psi_at<V>(row, j) - before;
-          const auto is_seen = detail::known<V>(change);
-          const V gone = is_seen ? none : V(detail::known<V>(before) ? one : none);
-          detail::store_cells<S>(to + j, V(is_seen ? change : none));
-          detail::store_cells<S>(lost + j, gone);
-          is_any_lost = is_any_lost || detail::any_lane(none < gone);
+    S* to = row_.data();
+    detail::for_each_cell<S>(
+        cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
+          const V change = this->template psi_at<V>(row, j) - detail::load_cells<V, S>(psi0 + j);
+          detail::store_cells<S>(
+              to + j, V(detail::known<V>(change) ? change : detail::every_lane<V>(S(0))));
         });
     change_.set(row, to);
-    if (is_any_lost && !is_any_lost_) {
-      lost_.clear();
-      is_any_lost_ = true;
-    }
-    if (is_any_lost_) {
-      lost_.set(row, lost);
-    }
-  }
-
-  /// Sets sum_ to psi_sum of a row in rad.
-  void find_sum(Index row) {
-    change_.sum(row, sum_.data());
-    if (is_any_lost_) {
-      lost_.sum(row, lost_row_.data());
-      const S* count = count_.data() + row * cols_;
-      for (std::size_t j = 0; j < sum_.size(); ++j) {
-        const S seen = count[j] - lost_row_[j];
-        sum_[j] = S(0) < seen ? sum_[j] * (count[j] / seen) : sum_[j];
-      }
-    }
   }
 
   /// Judged from every eighth pixel of every eighth row.
@@ -396,10 +319,8 @@ class NeighbourLightCompensation {
   Index rows_, cols_;
   std::vector<S> depth_mm_, reference_mm_;  // with a border of one cell, which is missing
   std::vector<S> psi0_;                     // of the reference; NaN where missing
-  std::vector<S> count_;                    // of the pixels that have psi0, in each disc
-  detail::DiscSums<S> change_, lost_;       // of psi in rad; of pixels
-  std::vector<S> row_, lost_row_, sum_;
-  bool is_any_lost_ = false;
+  detail::DiscSums<S> change_;              // of psi in rad
+  std::vector<S> row_, sum_;
 };
 
 }  // namespace v0

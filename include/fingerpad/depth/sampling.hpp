@@ -20,7 +20,6 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/colour_rows.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
@@ -124,16 +123,6 @@ std::pair<sample_t<Pixel>, sample_t<Pixel>> one_sample(
   return {none, none};
 }
 
-/// The pixels from (row, col) on, if they lie side by side; else nullptr.
-template <class View>
-const std::uint8_t* in_place(const View& view, Index row, Index col) {
-  if constexpr (plain_rows<View, std::uint8_t>) {
-    return view.col_stride() == 1 ? view.row(row) + col : nullptr;
-  } else {
-    return nullptr;
-  }
-}
-
 /// 64 samples of 8-bit pixels, with loops whose length the compiler knows. Step 0: any step.
 template <int Step>
 class SampleBlock {
@@ -155,15 +144,9 @@ class SampleBlock {
     const std::size_t width = samples * step();
     std::array<std::uint8_t, pixels> red_row, green_row;
     for (Index k = row; k < row + static_cast<Index>(step()); ++k) {
-      const std::uint8_t *from_red = in_place(red, k, col), *from_green = in_place(green, k, col);
-      if (from_red == nullptr || from_green == nullptr) {
-        load_pixels(red, green, k, col, static_cast<Index>(width), red_row.data(),
-                    green_row.data());
-        from_red = red_row.data();
-        from_green = green_row.data();
-      }
+      load_pixels(red, green, k, col, static_cast<Index>(width), red_row.data(), green_row.data());
       for (std::size_t at = 0; at < width; at += samples) {
-        add(from_red + at, from_green + at, &red_[at], &green_[at], &count_[at], &bright_[at]);
+        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &bright_[at]);
       }
     }
     write(to_red, to_green);

@@ -32,11 +32,9 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
@@ -47,6 +45,17 @@ namespace fingerpad {
 inline namespace v0 {
 
 namespace detail {
+
+/// 1 / sqrt(x) for x > 0, rough for a vector.
+template <class V>
+[[gnu::always_inline]] inline V inverse_sqrt(const V& x) {
+  if constexpr (scalar<V>) {
+    using std::sqrt;
+    return V(1) / sqrt(x);
+  } else {
+    return rough_inverse_sqrt<V>(x);
+  }
+}
 
 /// (K1) over 2 r, for scalars and vectors.
 template <class V>
@@ -163,36 +172,17 @@ S section_curvature(const S& radius_mm, const S& before_mm, const S& center_mm, 
   return S(2) * radius_mm * detail::section<S>(radius_sq, before_mm, center_mm, after_mm);
 }
 
-/// The ring of pixels on which curvature is measured: sections through the center pixel in evenly
-/// spaced directions, each with one pixel at either end. An end is the pixel nearest to the circle,
-/// and its true distance is used as the radius, because interpolation would bias the second
-/// difference by up to curvature px^2 / 4 per sample. Default: the slides' radius, 1.92 mm on the
-/// published pad, and number of directions.
-struct CurvatureRing {
-  double radius_px = 25;             ///< in widths of a pixel, in [1, 1000]
-  double min_direction_share = 0.5;  ///< share of sections that must be complete, in (0, 1]
-  int directions = 18;               ///< in [1, 360]; time grows with it
-
-  friend bool operator==(const CurvatureRing&, const CurvatureRing&) = default;
-};
-
-/// Says which value is out of range; "" if none is.
-inline std::string check(const CurvatureRing& ring) {
-  return check(
-      "CurvatureRing",
-      {{"radius_px", ring.radius_px, within(1, 1000)},
-       {"min_direction_share", ring.min_direction_share, {.min = 0, .max = 1, .above_min = true}},
-       {"directions", ring.directions, within(1, 360)}});
-}
-
-/// Mean curvature of depth maps of one size, computed in the scalar S: by vectors in float and
-/// double, pixel by pixel in any other.
+/// Mean curvature of depth maps of one size, computed in the scalar S: by vectors in float, pixel
+/// by pixel in any other.
 ///
-/// A pixel gets NaN if its depth is missing (not in (-100, 100) mm, or next to the camera) or too
-/// few of its sections are complete, else the mean of the complete sections. A missing depth
-/// affects no pixel beyond the ring's radius.
+/// It is measured on a ring of pixels: sections through the center pixel in evenly spaced
+/// directions, each with one pixel at either end. An end is the pixel nearest to the circle, and
+/// its true distance is used as the radius, because interpolation would bias the second difference
+/// by up to curvature px^2 / 4 per sample. A pixel gets NaN if its depth is missing (not in (-100,
+/// 100) mm, or next to the camera) or more than half of its sections are not complete, else the
+/// mean of the complete ones. A missing depth affects no pixel beyond the ring's radius.
 ///
-/// Rounding: in double about 1e-15 per mm. In float, sections by vectors have a relative error of
+/// Rounding: in double about 1e-15 per mm. In float, by vectors, sections have a relative error of
 /// 2.1e-5. An error of one unit in the last place e in a depth (through a camera, in zeta) changes
 /// a curvature by up to 4 e / r^2.
 ///
@@ -201,26 +191,28 @@ template <scalar S = float>
 class CurvatureMap {
  public:
   /// rows, cols in [1, 1e6], at most 1e8 pixels; the camera's pitch in [1e-4, 10] mm and its
-  /// pixel_aspect in [0.1, 10], at most the ring's radius in px. Depths along the rays of a Camera,
-  /// or heights of an OrthographicCamera. Refuses bad parameters (parameter_error).
+  /// pixel_aspect in [0.1, 10], at most ring_px. Depths along the rays of a Camera, or heights of
+  /// an OrthographicCamera. ring_px: radius of the ring in widths of a pixel, in [1, 1000];
+  /// directions in [1, 360]. Their defaults are those of the slides; 25 px is 1.92 mm on the
+  /// published pad. Refuses bad parameters (parameter_error).
   template <class CameraType = Camera<double>>
-  CurvatureMap(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring = {})
-      : growth_(growth_of(camera, rows, cols, ring)),
+  CurvatureMap(
+      const CameraType& camera, Index rows, Index cols, double ring_px = 25, int directions = 18)
+      : growth_(growth_of(camera, rows, cols, ring_px, directions)),
         rows_(rows),
         cols_(cols),
-        least_(least_of(ring)),
+        least_((directions + 1) / 2),
         segment_(static_cast<std::size_t>(columns), S(0)) {
     const double aspect = static_cast<double>(value(camera.pixel_aspect));
     const double size_px =
         (std::max)(static_cast<double>(cols), aspect * static_cast<double>(rows));
-    const double reach_px = (std::min)(ring.radius_px, size_px);  // larger rings are never complete
+    const double reach_px = (std::min)(ring_px, size_px);  // larger rings are never complete
     row_margin_ = static_cast<Index>(std::ceil(reach_px / aspect));
-    const Index col_margin = static_cast<Index>(std::ceil(reach_px));
-    left_ = (col_margin + line - 1) / line * line;
-    stride_ = odd_lines(left_ + cols + col_margin);
-    sections_ = {detail::ring_offsets(reach_px, ring.directions, aspect), stride_,
+    col_margin_ = static_cast<Index>(std::ceil(reach_px));
+    stride_ = cols + 2 * col_margin_;
+    sections_ = {detail::ring_offsets(reach_px, directions, aspect), stride_,
                  static_cast<S>(camera.pitch_mm), aspect};
-    cells_.assign(static_cast<std::size_t>((rows + 2 * row_margin_) * stride_ + 2 * line),
+    cells_.assign(static_cast<std::size_t>((rows + 2 * row_margin_) * stride_ + 2 * n),
                   not_a_number<S>());
   }
 
@@ -267,31 +259,19 @@ class CurvatureMap {
   static constexpr int n = detail::row_lanes<S>;
   using V = detail::lanes<S, n>;
   static constexpr Index columns = 128;  // of a strip, which fits the cache with its ring
-  static constexpr Index line = 64 / static_cast<Index>(sizeof(float));
 
   template <class CameraType>
-  static S growth_of(const CameraType& camera, Index rows, Index cols, const CurvatureRing& ring) {
+  static S growth_of(
+      const CameraType& camera, Index rows, Index cols, double ring_px, int directions) {
     require(camera);
-    require(ring);
     expects_grid_size("CurvatureMap", rows, cols);
-    const std::string refusal =
-        check("CurvatureMap", {{"camera.pitch_mm", camera.pitch_mm, within(1e-4, 10)},
-                               {"camera.pixel_aspect", camera.pixel_aspect,
-                                within(0.1, (std::min)(10.0, ring.radius_px))}});
-    if (!refusal.empty()) {
-      refuse(refusal);
-    }
+    require("CurvatureMap",
+            {{"ring_px", ring_px, within(1, 1000)},
+             {"directions", directions, within(1, 360)},
+             {"camera.pitch_mm", camera.pitch_mm, within(1e-4, 10)},
+             {"camera.pixel_aspect", camera.pixel_aspect, within(0.1, (std::min)(10.0, ring_px))}});
     return static_cast<S>(growth_per_mm(camera));
   }
-
-  static int least_of(const CurvatureRing& ring) {
-    const double share = ring.min_direction_share * ring.directions;
-    return (std::max)(1, static_cast<int>(std::ceil(share - 1e-9)));
-  }
-
-  /// Row stride: whole cache lines, an odd number of them, so that rows spread over all sets of a
-  /// cache instead of a few.
-  static Index odd_lines(Index cells) { return ((cells / line + 2) | 1) * line; }
 
   template <class G>
   bool has_size(const G& g) const {
@@ -299,7 +279,7 @@ class CurvatureMap {
   }
 
   S* cell(Index row, Index col) {
-    return cells_.data() + (row + row_margin_) * stride_ + left_ + col;
+    return cells_.data() + (row + row_margin_) * stride_ + col_margin_ + col;
   }
 
   /// Stores zeta of a row; NaN where the depth is missing.
@@ -308,9 +288,8 @@ class CurvatureMap {
     S* row = cell(i, 0);
     const S* depth_mm = detail::row_of(from, i, row);
     const double growth = static_cast<double>(value(growth_));
-    const auto highest = scalar_real_t<S>(detail::no_pad_mm);
-    const auto lowest =
-        growth * detail::no_pad_mm > 0.99 ? scalar_real_t<S>(-0.99 / growth) : -highest;
+    const auto highest = scalar_real_t<S>(100);
+    const auto lowest = growth > 0.0099 ? scalar_real_t<S>(-0.99 / growth) : -highest;
     detail::for_each_cell<S>(cols_, [&]<class W>(Index j) {
       const W l = detail::load_cells<W, S>(depth_mm + j);
       const W zeta = l / (1 + growth_ * l);
@@ -379,12 +358,10 @@ class CurvatureMap {
   Index rows_;
   Index cols_;
   int least_;  // number of sections that must be complete
-  Index row_margin_ = 0;
-  Index left_ = 0;  // margin that fills whole cache lines
-  Index stride_ = 0;
+  Index row_margin_ = 0, col_margin_ = 0, stride_ = 0;
   detail::RingSections<S> sections_;
-  detail::aligned_vector<S> cells_;  // zeta, with a margin of NaN on every side
-  detail::aligned_vector<S> segment_;
+  std::vector<S> cells_;  // zeta, with a margin of NaN on every side
+  std::vector<S> segment_;
 };
 
 }  // namespace v0

@@ -61,14 +61,10 @@ std::string check(const Camera<S>& c) {
                           {"distortion_k2", c.distortion_k2, finite_number}});
 }
 
-namespace detail {
-inline constexpr int no_pad_mm = 100;  // no pad is so thick
-}
-
 /// Whether a pixel can have this depth, in (-100, 100) mm. False for NaN.
 template <scalar S>
 constexpr bool is_depth(const S& depth_mm) {
-  return -detail::no_pad_mm < value(depth_mm) && value(depth_mm) < detail::no_pad_mm;
+  return -100 < value(depth_mm) && value(depth_mm) < 100;
 }
 
 /// The same camera in another scalar.
@@ -88,38 +84,62 @@ S tangent_ratio(const S& t_sq, const S& n) {
   const S n_sq = n * n;
   return S(1) / sqrt(n_sq + (n_sq - S(1)) * t_sq);
 }
+/// Distance from the axis at depth z per unit of t: where it meets the point that t sees.
+template <scalar S>
+S reach_mm(const Camera<S>& camera, const S& t_sq, const S& depth_mm) {
+  return camera.plate_distance_mm - camera.plate_thickness_mm +
+         camera.plate_thickness_mm * tangent_ratio(t_sq, camera.plate_index) +
+         depth_mm * tangent_ratio(t_sq, camera.refractive_index);
+}
 }  // namespace detail
 
-/// The ray of one pixel, as the depth model needs it.
+/// The ray of one pixel, as the depth model needs it, and the pencil of light that comes back along
+/// it: the area that the pixel sees at depth z is proportional to (z + meridional_mm)(z +
+/// sagittal_mm).
 template <scalar S = double>
 struct Ray {
-  S tan_air;       ///< t = tan(phi_air)
-  S tan_fluid;     ///< tan(phi_fluid): distance from the axis gained per mm of depth
-  S cos_fluid;     ///< cos(phi_fluid)
-  S plate_rho_mm;  ///< distance from the axis on the plate's inner face
-  S path_factor;   ///< k = 1 + 1/cos(phi_fluid): light travels k z to depth z and back
+  S tan_air = S(0);       ///< t = tan(phi_air)
+  S tan_fluid = S(0);     ///< tan(phi_fluid): distance from the axis gained per mm of depth
+  S cos_fluid = S(1);     ///< cos(phi_fluid)
+  S plate_rho_mm = S(0);  ///< distance from the axis on the plate's inner face
+  S path_factor = S(2);   ///< k = 1 + 1/cos(phi_fluid): light travels k z to depth z and back
+  S meridional_mm =
+      S(0);              ///< heights above the plate of the points from which it seems to come, in
+  S sagittal_mm = S(0);  ///< the plane of the ray and across it: refraction makes it astigmatic
+                         ///< (erratum E007)
 };
 
-/// The ray at tangent t = tan(phi_air) >= 0. O(1), three square roots.
+/// The ray at tangent t = tan(phi_air) >= 0. The heights are exact for thin pencils. O(1), three
+/// square roots.
 template <scalar S>
 Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
   using std::sqrt;
   const S t_sq = t * t;
   const S ratio = detail::tangent_ratio(t_sq, camera.refractive_index);
   const S inv_cos_air = sqrt(S(1) + t_sq);
-  // cos(phi_fluid) = sqrt(n^2 + (n^2 - 1) t^2) / (n sqrt(1 + t^2))
+  // cos(phi_fluid) = sqrt(n^2 + (n^2 - 1) t^2) / (n sqrt(1 + t^2)), and likewise in the plate
   const S inv_cos_fluid = camera.refractive_index * inv_cos_air * ratio;
-  const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
-  const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
-  return {t, t * ratio, S(1) / inv_cos_fluid, t * (in_air + in_plate), S(1) + inv_cos_fluid};
+  const S inv_cos_plate =
+      camera.plate_index * inv_cos_air * detail::tangent_ratio(t_sq, camera.plate_index);
+  const S in_air = (camera.plate_distance_mm - camera.plate_thickness_mm) * inv_cos_air;
+  const S in_plate = camera.plate_thickness_mm / camera.plate_index * inv_cos_plate;
+  const S cos_fluid = S(1) / inv_cos_fluid, n_cos = camera.refractive_index * cos_fluid;
+  const S meridional =
+      n_cos * cos_fluid * cos_fluid *
+      (in_air * inv_cos_air * inv_cos_air + in_plate * inv_cos_plate * inv_cos_plate);
+  return {t,
+          t * ratio,
+          cos_fluid,
+          t * detail::reach_mm(camera, t_sq, S(0)),
+          S(1) + inv_cos_fluid,
+          meridional,
+          n_cos * (in_air + in_plate)};
 }
 
 /// Tangent per pixel of distance from the center pixel, along a row, near the axis.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
-  const S paraxial = camera.plate_distance_mm - camera.plate_thickness_mm +
-                     camera.plate_thickness_mm / camera.plate_index;
-  return camera.pitch_mm / paraxial;
+  return camera.pitch_mm / detail::reach_mm(camera, S(0), S(0));
 }
 
 /// c: at depth l, pixels near the axis see points that are pitch_mm (1 + c l) apart along x.
@@ -130,14 +150,6 @@ S growth_per_mm(const Camera<S>& camera) {
 }
 
 namespace detail {
-/// Where a pinhole would see the pixel at (row, col): tangents along x and along y.
-template <scalar S>
-Point2<S> distorted_tangents(const Camera<S>& camera, const S& row, const S& col) {
-  const S scale = tangent_per_px(camera);
-  return {(col - camera.center_x_px) * scale,
-          (row - camera.center_y_px) * camera.pixel_aspect * scale};
-}
-
 /// 1 + k1 t^2 + k2 t^4; NaN if t (1 + k1 t^2 + k2 t^4) does not grow all the way to t.
 template <scalar S>
 S distortion(const Camera<S>& camera, const S& t_sq) {
@@ -179,7 +191,9 @@ S undistortion(const Camera<S>& camera, const S& d_sq) {
 /// pixels become rays.
 template <scalar S>
 Point2<S> tangents_of_pixel(const Camera<S>& camera, const S& row, const S& col) {
-  const Point2<S> distorted = detail::distorted_tangents(camera, row, col);
+  const S scale = tangent_per_px(camera);
+  const Point2<S> distorted = {(col - camera.center_x_px) * scale,
+                               (row - camera.center_y_px) * camera.pixel_aspect * scale};
   return detail::undistortion(camera, squared_norm(distorted)) * distorted;
 }
 /// The pixel that looks in this direction; inverse of tangents_of_pixel.
@@ -199,45 +213,13 @@ Ray<S> ray_at_pixel(const Camera<S>& camera, const S& row, const S& col) {
   return ray_at_tangent(camera, value(t_sq) == 0 ? S(0) : sqrt(t_sq));
 }
 
-/// Heights above the plate of the point from which the returning pencil seems to come. The area
-/// that a pixel sees at depth z is proportional to (z + meridional_mm)(z + sagittal_mm).
-template <scalar S = double>
-struct PencilHeights {
-  S meridional_mm;
-  S sagittal_mm;
-};
-
-/// Heights of the pencil along a ray. It is astigmatic (erratum E007): they differ along and across
-/// the plane of the ray. Exact for thin pencils.
-template <scalar S>
-PencilHeights<S> pencil_heights(const Camera<S>& camera, const Ray<S>& ray) {
-  using std::sqrt;
-  const S t_sq = ray.tan_air * ray.tan_air;
-  const S inv_cos_air = sqrt(S(1) + t_sq);
-  const S inv_cos_plate =
-      camera.plate_index * inv_cos_air * detail::tangent_ratio(t_sq, camera.plate_index);
-  const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
-  const S in_plate = camera.plate_thickness_mm / camera.plate_index;
-  const S n_cos = camera.refractive_index * ray.cos_fluid;
-  const S sagittal = n_cos * (in_air * inv_cos_air + in_plate * inv_cos_plate);
-  const S air_cubed = inv_cos_air * inv_cos_air * inv_cos_air;
-  const S plate_cubed = inv_cos_plate * inv_cos_plate * inv_cos_plate;
-  const S cos_sq = ray.cos_fluid * ray.cos_fluid;
-  const S meridional = n_cos * cos_sq * (in_air * air_cubed + in_plate * plate_cubed);
-  return {meridional, sagittal};
-}
-
 /// The point seen at (row, col) when its depth is depth_mm; NaN depth gives NaN. Ito et al. 2011,
 /// eq. 13, with tan(phi_fluid) in the place of its sine, because z is a depth (E019).
 template <scalar S>
 Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S& depth_mm) {
   const Point2<S> tangents = tangents_of_pixel(camera, row, col);
-  const S t_sq = squared_norm(tangents);
-  const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
-  const S in_plate = camera.plate_thickness_mm * detail::tangent_ratio(t_sq, camera.plate_index);
-  const S rho_per_t =
-      in_air + in_plate + depth_mm * detail::tangent_ratio(t_sq, camera.refractive_index);
-  return {tangents.x * rho_per_t, tangents.y * rho_per_t, depth_mm};
+  const S reach_mm = detail::reach_mm(camera, squared_norm(tangents), depth_mm);
+  return {tangents.x * reach_mm, tangents.y * reach_mm, depth_mm};
 }
 
 /// The pixel that sees `point` (x along columns, y along rows); inverse of point_at. Requires
@@ -247,18 +229,16 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
 template <scalar S>
 Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   using std::sqrt;
-  const S n = camera.refractive_index;
-  const S m = camera.plate_index;
+  const S n = camera.refractive_index, m = camera.plate_index;
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S rho_sq = point.x * point.x + point.y * point.y;
   const S rho = value(rho_sq) == 0 ? S(0) : sqrt(rho_sq);
-  S t = rho / (in_air + camera.plate_thickness_mm / m + point.z / n);
-  S reach = in_air;  // distance from the axis per unit of t
+  S reach = detail::reach_mm(camera, S(0), point.z);
+  S t = rho / reach;
   for (int step = 0; step <= 8; ++step) {
     const S t_sq = t * t;
-    const S fluid = detail::tangent_ratio(t_sq, n);
-    const S plate = detail::tangent_ratio(t_sq, m);
-    reach = in_air + camera.plate_thickness_mm * plate + point.z * fluid;
+    const S fluid = detail::tangent_ratio(t_sq, n), plate = detail::tangent_ratio(t_sq, m);
+    reach = detail::reach_mm(camera, t_sq, point.z);
     // d/dt of t / sqrt(n^2 + (n^2 - 1) t^2) is n^2 / (...)^(3/2)
     const S slope = in_air + camera.plate_thickness_mm * m * m * plate * plate * plate +
                     point.z * n * n * fluid * fluid * fluid;
@@ -269,54 +249,6 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
     }
   }
   return pixel_at_tangents(camera, {point.x / reach, point.y / reach});
-}
-
-/// A camera without perspective, for height maps from other sensors or simulations: each pixel sees
-/// the point straight above it.
-template <scalar S = double>
-struct OrthographicCamera {
-  S center_x_px = S(639) / S(2);  ///< pixel on the axis, along columns
-  S center_y_px = S(479) / S(2);  ///< the same along rows
-  S pitch_mm = S(8) / S(100);     ///< distance of the points that pixels side by side see, > 0
-  S pixel_aspect = S(1);          ///< distance of those above one another over pitch_mm, > 0
-};
-
-/// Says which value is out of range; "" if none is.
-template <scalar S>
-std::string check(const OrthographicCamera<S>& c) {
-  return check("OrthographicCamera", {{"center_x_px", c.center_x_px, finite_number},
-                                      {"center_y_px", c.center_y_px, finite_number},
-                                      {"pitch_mm", c.pitch_mm, positive},
-                                      {"pixel_aspect", c.pixel_aspect, positive}});
-}
-
-/// The same camera in another scalar.
-template <scalar To, scalar From>
-OrthographicCamera<To> cast(const OrthographicCamera<From>& c) {
-  return {To(c.center_x_px), To(c.center_y_px), To(c.pitch_mm), To(c.pixel_aspect)};
-}
-
-/// 0: pixels see points that are pitch_mm apart along x, at any depth.
-template <scalar S>
-S growth_per_mm(const OrthographicCamera<S>&) {
-  return S(0);
-}
-
-/// The point above (row, col) at height depth_mm; NaN depth gives NaN.
-template <scalar S>
-Point3<S> point_at(const OrthographicCamera<S>& camera,
-                   const S& row,
-                   const S& col,
-                   const S& depth_mm) {
-  return {(col - camera.center_x_px) * camera.pitch_mm,
-          (row - camera.center_y_px) * (camera.pitch_mm * camera.pixel_aspect), depth_mm};
-}
-
-/// The pixel that sees `point`.
-template <scalar S>
-Point2<S> pixel_of(const OrthographicCamera<S>& camera, const Point3<S>& point) {
-  return {camera.center_x_px + point.x / camera.pitch_mm,
-          camera.center_y_px + point.y / (camera.pitch_mm * camera.pixel_aspect)};
 }
 
 }  // namespace v0

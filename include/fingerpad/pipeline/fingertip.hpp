@@ -58,8 +58,7 @@ class Fingertip {
           detail::FingertipLookUp{o.force_of_area, o.force_of_depth, o.shear, o.shear_by_depth};
     }
     if (o.flat_area || o.force_of_area || (o.shear && !o.shear_by_depth)) {
-      find_flat_area_.emplace(camera_, red_.rows, red_.cols,
-                              o.flat_area.value_or(FlatAreaOptions{}));
+      find_flat_area_.emplace(camera_, red_.rows, red_.cols);
     }
     if ((dots_ || o.side_dots > 0) && o.wrench) {
       wrench_.emplace(o.camera, o);

@@ -46,9 +46,9 @@ struct FingertipOptions {
   double dot_depth_noise_mm = 0.025;  ///< standard deviation of a dot's depth, for the motion
   FrictionLimitOptions friction = {};
 
-  /// Of the area of the flat plate that would press as hard, by which forces are looked up for
-  /// objects of any shape; empty: by default, and only where a look-up needs it.
-  std::optional<FlatAreaOptions> flat_area = {};
+  /// Whether to find the area of the flat plate that would press as hard, by which forces are
+  /// looked up for objects of any shape, also where no look-up needs it.
+  bool flat_area = false;
   /// Force by that area in mm^2, with errors; empty: not used.
   std::optional<NormalForce<>> force_of_area = {};
   /// Force by depth in mm, with errors; empty: not used.

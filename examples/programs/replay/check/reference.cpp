@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "replay/check/parts.hpp"
 
 namespace replay {

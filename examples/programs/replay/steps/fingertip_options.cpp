@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
+#include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 
@@ -70,7 +71,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   options.smoothing_px = sensor.smoothing_px.value_or(options.smoothing_px);
   if (sensor.contact) {
     options.contact.threshold_per_mm = sensor.contact->threshold_per_mm;
-    options.contact.ring.radius_px = sensor.contact->ring_px;
+    options.contact.ring_px = sensor.contact->ring_px;
     // at least the default: the free pad does not show the error at the edge of a contact
     options.dot_depth_noise_mm =
         std::max(options.dot_depth_noise_mm, sensor.contact->depth_noise_mm.value_or(0));

@@ -134,7 +134,7 @@ std::unique_ptr<FingertipStep> make_fingertip_step(Recording& recording,
   if (!sensor.contact && recording.free_frames.size() > 0) {
     options.contact.threshold_per_mm = contact_threshold_of(recording, options);
   }
-  options.flat_area.emplace();  // written without a curve too, so that one can be fitted
+  options.flat_area = true;  // written without a curve too, so that one can be fitted
   return std::make_unique<Step>(recording, options);
 }
 

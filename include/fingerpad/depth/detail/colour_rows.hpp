@@ -27,7 +27,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/detail/pad.hpp"
 #include "fingerpad/image/detail/interleaved.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/window_means.hpp"
@@ -110,10 +109,11 @@ class ColourRows {
       if (reference.in_pad(row, col) && is_finite(g) && g > S(0) && gain > S(0) &&
           is_finite(gain * kappa_)) {
         const auto k = static_cast<std::size_t>(i * cols_ + j);
-        const Pencil<double> pencil = pencil_of(camera, ray_of(camera, row, col));
+        const Ray<double> ray =
+            ray_at_pixel(camera, static_cast<double>(row), static_cast<double>(col));
         const auto l = static_cast<double>(reference.depth(row, col));
-        rise_[k] = S(std::exp(delta * pencil.path_factor * l));
-        scattered_[k] = g * S(scattered_light(l, fluid.c_red_per_mm, pencil));
+        rise_[k] = S(std::exp(delta * ray.path_factor * l));
+        scattered_[k] = g * S(scattered_light(l, fluid.c_red_per_mm, ray));
         per_g_[k] = S(1) / g;
         if (!reference.red_gain.empty()) {
           gain_[k] = gain;
@@ -137,12 +137,12 @@ class ColourRows {
   /// 1 / g of the pixels of a row, with a block of spare elements; 0 where a pixel is not used.
   const S* per_g(Index row) const { return per_g_.data() + row * cols_; }
 
-  /// Begins with row `first` of a frame.
+  /// Begins with the first row of a frame.
   template <class Red, class Green>
-  void start(const Red& red, const Green& green, const GreyScale& scale, Index first) {
-    row_ = first;
+  void start(const Red& red, const Green& green, const GreyScale& scale) {
+    row_ = 0;
     if (wide_means_) {
-      means<element_t<cell_t<Red>>>().start(first, source(red, green, scale));
+      means<element_t<cell_t<Red>>>().start(source(red, green, scale));
     }
   }
 

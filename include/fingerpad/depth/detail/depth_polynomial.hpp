@@ -23,7 +23,6 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/depth_inverse.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -83,17 +82,17 @@ class DepthPolynomial {
         u_root_per_col_(S(1 / radius_px)),
         u_root_per_row_(S(camera.pixel_aspect / radius_px)) {
     const double l_max = fluid.max_depth_mm;
-    const auto pencil = [&](double u) {
+    const auto ray = [&](double u) {
       const double distorted = radius_px * std::sqrt(u) * tangent_per_px(camera);
       const double tangent = distorted * undistortion(camera, distorted * distorted);
-      return pencil_of(camera, ray_at_tangent(camera, tangent));
+      return ray_at_tangent(camera, tangent);
     };
     const auto scattered = [&](double s, double u) {
-      return scattered_light(l_max * s, fluid.c_red_per_mm, pencil(u));
+      return scattered_light(l_max * s, fluid.c_red_per_mm, ray(u));
     };
     const auto exp_minus_1 = [&](double s, double u) {
       const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
-      return std::expm1(delta * pencil(u).path_factor * l_max * s);
+      return std::expm1(delta * ray(u).path_factor * l_max * s);
     };
     project([&](double s, double u) { return scattered(s, u) / s; }, scatter_radial, scatter_);
     project([&](double s, double u) { return exp_minus_1(s, u) / s; }, exp_radial, exp_minus_1_);

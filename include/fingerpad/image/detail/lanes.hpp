@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Applies one formula along a row: by vectors for float, double and unsigned integers, else cell by
-// cell. Both ways compute a cell alike. A thin layer over the vector extensions that GCC and clang
-// share; vectors are explicit where GCC 12 does not vectorise plain loops (see docs/design.md).
-// Their width is that of the target instruction set, since compilers split wider vectors badly:
-// compile a whole program for one instruction set. If the compiler, byte order or machine is not
-// supported, or the user defines FINGERPAD_NO_VECTORS (for the whole program), everything goes cell
-// by cell.
+// Applies one formula along a row: by vectors for float, else cell by cell. Both ways compute a
+// cell alike. A thin layer over the vector extensions that GCC and clang share; vectors are
+// explicit where GCC 12 does not vectorise plain loops (see docs/design.md). Their width is that of
+// the target instruction set, since compilers split wider vectors badly: compile a whole program
+// for one instruction set. If the compiler, byte order or machine is not supported, or the user
+// defines FINGERPAD_NO_VECTORS (for the whole program), everything goes cell by cell.
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
@@ -28,23 +27,20 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-#if !defined(FINGERPAD_HAS_VECTORS)
-inline constexpr int vector_bytes = 0;
-#elif defined(__AVX512BW__) && defined(__AVX512VL__)
-inline constexpr int vector_bytes = 64;
-#elif defined(__AVX2__)
-inline constexpr int vector_bytes = 32;
-#else
-inline constexpr int vector_bytes = 16;
-#endif
-
 /// The number of lanes of S in a vector; 1 if there are no vectors of S.
 template <class S>
 inline constexpr int row_lanes = 1;
-template <class S>
-  requires(vector_bytes > 0 &&
-           (std::same_as<S, float> || std::same_as<S, double> || std::unsigned_integral<S>))
-inline constexpr int row_lanes<S> = vector_bytes / static_cast<int>(sizeof(S));
+#if !defined(FINGERPAD_HAS_VECTORS)
+#elif defined(__AVX512BW__) && defined(__AVX512VL__)
+template <>
+inline constexpr int row_lanes<float> = 16;
+#elif defined(__AVX2__)
+template <>
+inline constexpr int row_lanes<float> = 8;
+#else
+template <>
+inline constexpr int row_lanes<float> = 4;
+#endif
 
 /// N numbers S in one vector, or S itself. A struct, because GCC 12 ignores a dependent size in a
 /// function-local alias.
@@ -127,13 +123,12 @@ template <class Mask>
 [[gnu::always_inline]] inline bool any_lane(const Mask& mask) {
   if constexpr (std::same_as<Mask, bool>) {
     return mask;
-  } else if constexpr (sizeof(Mask) > 16) {
-    using Half = lanes<std::uint64_t, static_cast<int>(sizeof(Mask) / 16)>;
-    const char* bytes = reinterpret_cast<const char*>(&mask);
-    return any_lane(Half(load<Half>(bytes) | load<Half>(bytes + sizeof(Half))));
   } else {
-    const auto words = lanes<std::uint64_t, static_cast<int>(sizeof(Mask) / 8)>(mask);
-    return (words[0] | words[1]) != 0;
+    std::uint64_t any = 0;
+    for (std::size_t at = 0; at < sizeof(Mask); at += 8) {
+      any |= load<std::uint64_t>(reinterpret_cast<const char*>(&mask) + at);
+    }
+    return any != 0;
   }
 }
 

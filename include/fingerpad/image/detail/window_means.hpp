@@ -5,21 +5,20 @@
 // holds the pixels that count among the w x w (odd, 3..255) around a pixel; where none counts, the
 // mean is NaN. Green is averaged over the inner window only.
 //
-// Pixels are whole numbers with exact sums: any band of rows has the bits of the whole image, and
-// float means have those of a box filter. Each object is the memory of one thread and allocates
-// only at construction.
+// Pixels are whole numbers with exact sums, so float means have the bits of a box filter. Each
+// object is the memory of one thread and allocates only at construction.
 //
 //   WindowMeans<std::uint32_t> means(rows, cols, {33, 55});
-//   means.start(first, load_row);
-//   for (Index row = first; row < last; ++row) {
+//   means.start(load_row);
+//   for (Index row = 0; row < rows; ++row) {
 //     means.advance(load_row, inner_red, inner_green, outer_red);
 //   }
 //
 // load_row(row, red, green, counts) fills a row of the image. counts[j] is 1 where the pixel
-// counts, else 0, and then red and green are 0, too. It is called for rows in order, once each,
-// from half an outer window above `first` on. All rows are in memory for whole blocks of 64. Loops
-// over pixels are blocks of a length known to the compiler, which GCC 12 vectorises at -O2 unless
-// it inlines them: then it forgets __restrict (tests/vectors).
+// counts, else 0, and then red and green are 0, too. It is called for rows in order, once each. All
+// rows are in memory for whole blocks of 64. Loops over pixels are blocks of a length known to the
+// compiler, which GCC 12 vectorises at -O2 unless it inlines them: then it forgets __restrict
+// (tests/vectors).
 #include <algorithm>
 #include <array>
 #include <concepts>
@@ -54,12 +53,11 @@ class WindowMeans {
     ring_.assign(std::size_t(2 * outer_ + 2), none_);
   }
 
-  /// Prepares for row `first`.
+  /// Prepares for the first row.
   template <class Load>
-  void start(Index first, const Load& load_row) {
-    next_row_ = first;
-    begin_ = (std::max)(first - outer_, Index(0));
-    for (Index row = begin_; row < first + outer_; ++row) {
+  void start(const Load& load_row) {
+    next_row_ = 0;
+    for (Index row = 0; row < outer_; ++row) {
       take_in(row, load_row);
     }
   }
@@ -85,7 +83,7 @@ class WindowMeans {
 
   /// Sums over the rows up to `row`: element j over the columns before j - outer_.
   Planes& sums(Index row) {
-    return row < begin_ ? none_ : ring_[std::size_t((std::min)(row, rows_ - 1)) % ring_.size()];
+    return row < 0 ? none_ : ring_[std::size_t((std::min)(row, rows_ - 1)) % ring_.size()];
   }
 
   template <class Load>
@@ -175,7 +173,6 @@ class WindowMeans {
   Index rows_, cols_;
   Index inner_, outer_;  // half windows
   Index next_row_ = 0;
-  Index begin_ = 0;  // the first row that is summed
   Planes row_, none_;
   std::vector<Planes> ring_;
 };

@@ -257,7 +257,7 @@ inline ContactTest test_of_samples(const FingertipOptions& o) {
           "contact.free_apex_mm", test.free_apex_mm,
           ("within 5 % of the highest point of the reference's shape, " + written(apex_mm) + " mm")
               .c_str());
-  test.ring.radius_px = (std::max)(test.ring.radius_px / o.sampling, 1.0);
+  test.ring_px = (std::max)(test.ring_px / o.sampling, 1.0);
   const int px = o.sampling * o.sampling;
   test.min_region_px = (test.min_region_px + px - 1) / px;
   return test;

@@ -10,7 +10,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/detail/pad.hpp"
 #include "fingerpad/depth/sampling.hpp"
 
 namespace fingerpad {
