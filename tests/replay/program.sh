@@ -120,7 +120,7 @@ if /usr/bin/python3 -c 'import matplotlib' 2>/dev/null; then
     /usr/bin/python3 -B "$root/examples/programs/plot.py" "$work/${of%:*}" \
       "$root/examples/data/${of#*:}" || fail "plot.py ${of#*:}"
   done
-  for file in out/pictures/{motion,stick_ratio,forces,wrench}.png foam/pictures/{preslip,array}.png; do
+  for file in out/pictures/{motion,stick_ratio,forces}.png foam/pictures/{preslip,array}.png; do
     [[ -s $work/$file ]] || fail "plot.py does not draw $file"
   done
   # A folder with charts is still one of replay's.
