@@ -110,6 +110,26 @@ TEST_CASE("published identification: equations that contradict each other have n
   }
 }
 
+TEST_CASE("published place of a dot: eq. 13 with its angles", "[published]") {
+  const published::Pinhole<double> camera{
+      .h1_mm = 40, .n = 1.4, .center_row_px = 3, .center_col_px = 5, .pitch_mm = 0.1};
+  for (const double row : {-97.0, 3.0, 60.0}) {
+    for (const double col : {5.0, 55.0, 205.0}) {
+      const double x = 0.1 * (col - 5), y = 0.1 * (row - 3), rho = std::hypot(x, y);
+      const double in_air = std::atan2(rho, 40), in_fluid = std::asin(std::sin(in_air) / 1.4);
+      for (const double depth_mm : {0.0, 2.0, 13.0}) {
+        // 1 + l sin / (h tan); its limit on the axis
+        const double stretch = rho > 0 ? 1 + depth_mm * std::sin(in_fluid) / (40 * std::tan(in_air))
+                                       : 1 + depth_mm / (1.4 * 40);
+        const auto p = published::point_at(camera, row, col, depth_mm);
+        CHECK(p.x == Approx(stretch * x).margin(1e-12));
+        CHECK(p.y == Approx(stretch * y).margin(1e-12));
+        CHECK(p.z == depth_mm);
+      }
+    }
+  }
+}
+
 TEST_CASE("published depth: sixteen halvings end at an odd multiple of 1 / 2^15 of the range",
           "[published]") {
   const auto is_odd = [](double multiple) { return std::abs(std::fmod(multiple, 2) - 1) < 1e-6; };

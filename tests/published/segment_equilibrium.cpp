@@ -210,6 +210,20 @@ TEST_CASE("the printed iteration begins at the first line that ends level", "[pu
   CHECK(norm(as_given.moment_n_mm - later.moment_n_mm) < 1e-8);
 }
 
+TEST_CASE("the printed iteration is linear in the pressure", "[published]") {
+  // the same shape under twice the pressure has twice the tensions, also where lines end tilted
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const auto dots = rim.dots([&](double at) { return RimLoad{0.1 + 0.01 * std::cos(at), 0.01}; });
+  SegmentEquilibrium<> wrench(rim.borders(), {.contours = 20, .passes = 2});
+  const auto once = wrench(TiltedTop(), dots, pressed_mpa);
+  const auto twice = wrench(TiltedTop(), dots, 2 * pressed_mpa);
+  REQUIRE(once.ok());
+  REQUIRE(twice.ok());
+  CHECK(norm(twice.force_n - 2.0 * once.force_n) < 1e-9 * norm(once.force_n));
+  CHECK(norm(twice.moment_n_mm - 2.0 * once.moment_n_mm) < 1e-9 * norm(once.moment_n_mm));
+}
+
 TEST_CASE("the printed iteration, word for word, on finite-element membranes", "[published]") {
   SegmentEquilibrium<> wrench(test::rim_border());
   double along = 0, along_sq = 0, turn = 0, turn_sq = 0;
