@@ -176,19 +176,24 @@ auto with_pixel_of(const py::object& given, const char* name, const Call& call) 
                        std::string(py::str(channel.dtype())));
 }
 
-/// Dots from an array (rows, cols, 2) or (rows, cols, 3) of float64, px or mm; NaN if missing.
+/// Dots from an array (rows, cols, 2) or (rows, cols, 3) of float32 or float64, px or mm; NaN if
+/// missing.
 template <class Point, std::size_t Coordinates>
 auto dots_of(const py::object& given, const char* name) {
   const py::array array = array_of(given, name);
+  const bool single = py::isinstance<py::array_t<float>>(array);
   if (array.ndim() != 3 || array.shape(2) != static_cast<py::ssize_t>(Coordinates) ||
-      !py::isinstance<py::array_t<double>>(array)) {
-    refuse_array(array, name, "(rows, cols, " + std::to_string(Coordinates) + ")", "float64");
+      (!single && !py::isinstance<py::array_t<double>>(array))) {
+    refuse_array(array, name, "(rows, cols, " + std::to_string(Coordinates) + ")",
+                 "float32 or float64");
   }
   const auto* bytes = static_cast<const char*>(array.data());
   const py::ssize_t row = array.strides(0), col = array.strides(1), coordinate = array.strides(2);
   return fingerpad::LazyView(array.shape(0), array.shape(1), [=](Index i, Index j) {
     const auto at = [&](py::ssize_t k) {
-      return *reinterpret_cast<const double*>(bytes + i * row + j * col + k * coordinate);
+      const char* cell = bytes + i * row + j * col + k * coordinate;
+      return single ? static_cast<double>(*reinterpret_cast<const float*>(cell))
+                    : *reinterpret_cast<const double*>(cell);
     };
     if constexpr (Coordinates == 2) {
       return Point{at(0), at(1)};

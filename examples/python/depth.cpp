@@ -115,9 +115,13 @@ void bind_depth(py::module_& module) {
       .def_property_readonly("ok", &DepthResult::ok)
       .def_property_readonly("status", [](const DepthResult& r) { return name_of(r.status); })
       .def_readonly("pad_pixels", &DepthResult::pad_pixels)
-      .def("count", [](const DepthResult& result, PixelStatus status) {
-        return result.count[static_cast<std::size_t>(status)];
-      });
+      .def_property_readonly("valid_pixels", &DepthResult::valid_pixels, "that have a depth")
+      .def(
+          "pixels",
+          [](const DepthResult& result, PixelStatus status) {
+            return result.count[static_cast<std::size_t>(status)];
+          },
+          py::arg("status"), "number of pixels of the pad with this status");
   py::class_<Reference>(module, "DepthReference",
                         "Light of the free pad; see depth/depth_reference.hpp.")
       .def_readonly("residual_rms", &Reference::residual_rms)

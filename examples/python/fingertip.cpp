@@ -224,18 +224,19 @@ void bind_fingertip(py::module_& module) {
            py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
            py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
-           "free_dots_mm: float64 (rows, cols, 3), the printed dots of the free pad, NaN: none;\n"
+           "free_dots_mm: float32 or float64 (rows, cols, 3), the printed dots of the free pad, "
+           "NaN: none;\n"
            "(0, 0, 3): no results from dots. wrench: WrenchOptions; None: no six-axis force.\n"
            "force_of_area, force_of_depth: NormalForce; shear: Shear. Without them no forces are\n"
            "looked up.")
-      .def(
-          "__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
-          py::arg("pressure_mpa"),
-          py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
-          "touch = fingertip(red, green, dots_px, pressure_mpa, time_s)\n\n"
-          "red, green: uint8 (rows, cols). dots_px: float64 (rows, cols, 2), NaN where not found.\n"
-          "pressure_mpa: MPa above the air pressure. time_s: s.\n"
-          "For arrays of another size the status is \"refused\".")
+      .def("__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
+           py::arg("pressure_mpa"),
+           py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
+           "touch = fingertip(red, green, dots_px, pressure_mpa, time_s)\n\n"
+           "red, green: uint8 (rows, cols). dots_px: float32 or float64 (rows, cols, 2), NaN where "
+           "not found.\n"
+           "pressure_mpa: MPa above the air pressure. time_s: s.\n"
+           "For arrays of another size the status is \"refused\".")
       .def_property_readonly(
           "depth_mm",
           [](Fingertip& f) { return f.copied<float>([](auto& tip) { return tip.depth_mm(); }); },

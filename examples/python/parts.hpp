@@ -33,6 +33,14 @@ inline void check_kind(const char* owner,
   }
 }
 
+/// Raises ParameterError if the settings have no meaning together; not every struct can say so.
+template <class Options>
+void refuse_bad(const Options& options) {
+  if constexpr (requires { std::string(check(options)); }) {
+    require(options);
+  }
+}
+
 /// Binds a struct of settings as a class with keyword arguments, e.g. Camera(pitch_mm=0.1). Unknown
 /// names are refused.
 template <class Options>
@@ -46,7 +54,11 @@ pybind11::class_<Options> bind_options(pybind11::module_& module,
         for (const auto& [field, value] : given) {
           py::setattr(options, field, value);
         }
-        return options.cast<Options>();
+        auto made = options.cast<Options>();
+        if (!given.empty()) {
+          refuse_bad(made);
+        }
+        return made;
       }))
       .def("__setattr__",
            [name](const py::object& self, const py::str& field, const py::object& value) {

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Tests the Python module on the bundled recording: pytest test_fingerpad.py, with the module's folder
 in PYTHONPATH. FINGERPAD_PROGRAMS is the folder of replay and calibrate, whose results must be equal."""
+import ast
 import base64
 import csv
 import hashlib
 import json
+import inspect
 import os
+import pydoc
 import re
 import shutil
 import subprocess
@@ -427,6 +430,39 @@ def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     with pytest.raises(TypeError, match=r"\(rows, cols, 2\)"):
         fingertip(red, green, free_dots, 0.016)
     assert fingertip(red, green, dots_px[1:], 0.016).status == "refused"
+
+
+def test_results_print_their_numbers_and_settings_their_keywords(pad, estimate):
+    red, green = channels(picture("frames/000005.png"))
+    depth, _, result = estimate(red, green)
+    assert repr(result).startswith("DepthResult(ok=True, status='ok', pad_pixels=")
+    assert f"valid_pixels={np.isfinite(depth).sum()}" in repr(result)
+    assert result.pixels(fp.PixelStatus.ok) == result.valid_pixels
+    touch = fp.Fingertip(*pad, np.full((3, 3, 3), np.nan))(red, green, np.full((3, 3, 2), np.nan), 0.016)
+    assert "wrench=WrenchResult(ok=False, status='" in repr(touch) and " object at 0x" not in repr(touch)
+    said = str(inspect.signature(fp.Camera))
+    assert said.startswith("(*, plate_distance_mm=50.0, ") and "pitch_mm=" in said
+    assert "slip_share" in pydoc.plain(pydoc.render_doc(fp.StickOptions))
+    with pytest.raises(fp.ParameterError, match="slip_share = 0"):
+        fp.StickOptions(slip_share=0)
+
+
+def test_dots_of_single_precision_give_the_same_answer():
+    columns, rows = np.meshgrid(np.arange(9.0), np.arange(9.0))
+    dots, touching = np.stack([columns * 12, rows * 12], axis=-1), np.ones((9, 9), bool)
+    ratios = [fp.StickRatio(9, 9), fp.StickRatio(9, 9)]
+    for shift in (0, 1, 2, 4):
+        seen = [ratio((dots + [shift, 0]).astype(kind), touching, 0.1 * shift)[1]
+                for ratio, kind in zip(ratios, (np.float32, np.float64))]
+    assert repr(seen[0]) == repr(seen[1])
+
+
+def test_stubs_are_python_and_name_everything():
+    sys.path.insert(0, str(Path(__file__).parent))
+    import stubs
+    tree = ast.parse(stubs.text_of(fp.__file__))
+    named = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert named == {name for name in dir(fp) if name[0] != "_"}
 
 
 def test_the_wheel_holds_the_module_and_its_record(tmp_path):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Packs the built module as a wheel (PEP 427): wheel.py MODULE VERSION FOLDER prints its path.
+"""Packs the built module and its stubs as a wheel (PEP 427): wheel.py MODULE VERSION FOLDER prints
+its path.
 
 A wheel is a zip archive that names its files and their hashes; nothing but Python is needed.
 """
@@ -12,6 +13,8 @@ import sys
 import sysconfig
 import zipfile
 
+import stubs
+
 module, version, folder = pathlib.Path(sys.argv[1]), sys.argv[2], pathlib.Path(sys.argv[3])
 python = f"cp{sys.version_info.major}{sys.version_info.minor}"
 platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
@@ -20,6 +23,7 @@ info = f"fingerpad-{version}.dist-info"
 
 files = {
     module.name: module.read_bytes(),
+    "fingerpad.pyi": stubs.text_of(module).encode(),
     f"{info}/METADATA": f"""Metadata-Version: 2.1
 Name: fingerpad
 Version: {version}

@@ -113,12 +113,14 @@ void bind_wrench(py::module_& module) {
       .def(py::init<const fingerpad::Camera<double>&, const Options&>(), py::arg("camera"),
            py::arg("options") = Options())
       .def("learn", &WrenchOfDots::learn, py::arg("free_dots_px"), py::arg("pressure_mpa"),
-           "Takes the dots of the free pad, float64 (rows, cols, 2), NaN where not found; returns\n"
+           "Takes the dots of the free pad, float32 or float64 (rows, cols, 2), NaN where not "
+           "found; returns\n"
            "how many of them are near the rim.")
       .def("__call__", &WrenchOfDots::operator(), py::arg("dots_px"), py::arg("pressure_mpa"),
            py::arg("sd_px") = py::float_(0.06),
            "result = wrench(dots_px, pressure_mpa, sd_px)\n\n"
-           "dots_px: float64 (rows, cols, 2) as in learn, NaN where not found or touched.\n"
+           "dots_px: float32 or float64 (rows, cols, 2) as in learn, NaN where not found or "
+           "touched.\n"
            "pressure_mpa: MPa above the air pressure. sd_px: noise of a dot.");
 }
 
