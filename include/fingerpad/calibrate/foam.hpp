@@ -120,12 +120,12 @@ class TaxelNoiseCalibration {
         S(std::sqrt(std::numbers::pi / 4 / (freedom * static_cast<double>(changed))));
     for (std::size_t k = 0; k < count; ++k) {
       const bool is_dead = variances_[k].empty();
-      const S own = S(0) < squares[k] ? S(sqrt(squares[k])) : S(0);
+      const S own = S(0) < squares[k] ? sqrt(squares[k]) : S(0);
       const S deviation = noise.typical < own ? own : noise.typical;
       noise.deviations.push_back(is_dead ? not_a_number<S>() : deviation);
       dead += is_dead ? 1 : 0;
       for (const S& variance : variances_[k]) {
-        const S factor = S(0) < variance ? S(sqrt(variance) / deviation) : S(0);
+        const S factor = S(0) < variance ? sqrt(variance) / deviation : S(0);
         noise.largest_factor = noise.largest_factor < factor ? factor : noise.largest_factor;
       }
     }
@@ -135,7 +135,7 @@ class TaxelNoiseCalibration {
                       : nullptr;
     const S centroid_sq =
         (mean_square_of(variances_[count]) + mean_square_of(variances_[count + 1])) / S(2);
-    noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : S(sqrt(centroid_sq));
+    noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : sqrt(centroid_sq);
     return noise;
   }
 

@@ -452,7 +452,7 @@ ShearFit<S> fit_shear(const char* owner,
   const auto normalised = [&](const S& power) {
     PlaneVectors<S> d = x;
     for (Index i = 0; i < n; ++i) {
-      d.row(i) *= S(exp(power * log_ratio(i)));
+      d.row(i) *= exp(power * log_ratio(i));
     }
     return d;
   };
@@ -486,7 +486,7 @@ ShearFit<S> fit_shear(const char* owner,
       columns.col(1) = in_rows(log_ratio.asDiagonal() * d);
     }
     fit = fit_linear<S>(owner, {"slope", exponent_name}, measured, columns);
-    const S step = exponent ? S(0) : S(fit.parameters(1) / fit.parameters(0));
+    const S step = exponent ? S(0) : fit.parameters(1) / fit.parameters(0);
     power = is_finite(step) ? power + step : not_a_number<S>();  // no force at all
     settled = !(square(S(1e-3)) * epsilon<S>() < square(step));
   }
@@ -494,7 +494,7 @@ ShearFit<S> fit_shear(const char* owner,
   expects(exponent || (S(-2) <= power && power <= S(6)), owner, exponent_name, power,
           "in [-2, 6]: the samples do not determine it");
   const PlaneVectors<S> d = normalised(power);
-  result.law.to = sqrt(S(d.rowwise().squaredNorm().maxCoeff()));
+  result.law.to = sqrt(d.rowwise().squaredNorm().maxCoeff());
   expects(is_finite(result.law.to), owner, "largest displacement or rotation", result.law.to,
           "finite");
   const S& c = result.law.slope;
