@@ -93,7 +93,7 @@ Trial intensity() {
     return presses;
   };
   const auto fit = [=](const std::vector<Picture>& presses) {
-    const auto found = fit_intensity(free, presses, ball_mm, mm_per_px);
+    const auto found = fingerpad::fit_intensity(free, presses, ball_mm, mm_per_px);
     return Estimate{{found.law.linear_mm}, {{found.covariance[0][0]}}};
   };
   return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);
