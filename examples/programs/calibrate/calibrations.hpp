@@ -11,6 +11,7 @@
 
 #include "calibrate/report.hpp"
 #include "common/images.hpp"
+#include "fingerpad/core/point.hpp"
 
 namespace calibrate {
 
@@ -76,6 +77,25 @@ Outcome force(const Path& contacts, const Path& gauge);
 
 /// The noise of taxels, from taxels.csv of an array at rest.
 Outcome taxels(const Path& recording);
+
+/// What a finger will measure that is not yet built: standard deviations of the six axes and of the
+/// depth of its free pad, and the smallest press and dent, four of them. Nothing is read or
+/// written.
+struct Plan {
+  double base_radius_mm = 0, stress_free_height_mm = 0, thickness_mm = 0;
+  double shear_modulus_mpa = 0;      ///< of the rubber
+  double pressure_mpa = 0;           ///< of the free pad
+  double grid_pitch_mm = 1.5;        ///< of the printed grid, in plan
+  std::vector<double> rows_mm = {};  ///< arcs of rows of dots from the rim; else the grid
+  std::vector<fingerpad::Point2<double>> places = {};  ///< or any print: arc, mm; azimuth, rad
+  int dots_in_row = 72;
+  double dot_noise_px = 0.06;
+  double brightness = 180;  ///< grey levels of the membrane without fluid
+  double grey_noise = 1;    ///< of a pixel, grey levels
+  int picture_rows = 480;   ///< which the pad fills
+  int window_px = 29;       ///< over which depth is smoothed
+};
+Outcome plan(const Plan& plan);
 
 /// Everything that `folder` has pictures of: camera, shape, absorption, contact and rim, with what
 /// about.json knows without measuring. Writes sensor.json to the folder and prints one table; what

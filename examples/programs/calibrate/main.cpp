@@ -48,7 +48,9 @@ int run(const Common& common, const std::function<Outcome()>& work) {
   for (const auto& refusal : outcome.refusals) {
     print(refusal);
   }
-  save(outcome, common.sensor());
+  if (!common.recording.empty()) {  // a plan has none
+    save(outcome, common.sensor());
+  }
   for (std::size_t k = 0; !common.plots.empty() && k < outcome.plots.size(); ++k) {
     std::filesystem::create_directories(common.plots);
     if (!outcome.plots[k].points.empty()) {
@@ -64,6 +66,7 @@ struct Arguments {
   calibrate::PadSize size;
   int max_radius_px = 50;
   calibrate::RimNoise rim;
+  calibrate::Plan plan;
   Path contacts, gauge, practice, finger;
 };
 
@@ -164,6 +167,31 @@ void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<O
       [&] { return calibrate::taxels(common.recording); }, work);
 }
 
+void add_plan(CLI::App& app, Arguments& given, std::function<Outcome()>& work) {
+  auto* sub = app.add_subcommand(
+      "plan",
+      "before one builds: what such a finger will measure of depth and force, and how well");
+  auto& p = given.plan;
+  const auto must = [&](const char* name, double& to, const char* about) {
+    sub->add_option(name, to, about)->required()->check(CLI::PositiveNumber);
+  };
+  must("--base-radius-mm", p.base_radius_mm, "base radius of the pad");
+  must("--stress-free-height-mm", p.stress_free_height_mm, "apex height of the pad's mould");
+  must("--thickness-mm", p.thickness_mm, "thickness of the membrane");
+  must("--shear-modulus-mpa", p.shear_modulus_mpa, "shear modulus of the rubber");
+  must("--pressure-mpa", p.pressure_mpa, "pressure of the free pad");
+  sub->add_option("--grid-pitch-mm", p.grid_pitch_mm, "pitch of the printed grid of dots");
+  sub->add_option("--side-rows", p.rows_mm, "rows of dots around the rim in place of the grid, mm")
+      ->delimiter(',');
+  sub->add_option("--dots-in-row", p.dots_in_row, "dots in each row");
+  sub->add_option("--dot-noise-px", p.dot_noise_px, "noise with which a dot is found");
+  sub->add_option("--brightness", p.brightness, "grey levels of the membrane without fluid");
+  sub->add_option("--grey-noise", p.grey_noise, "noise of a pixel, grey levels");
+  sub->add_option("--picture-rows", p.picture_rows, "height of the picture, which the pad fills");
+  sub->add_option("--window-px", p.window_px, "window over which depth is smoothed");
+  sub->callback([&given, &work] { work = [&given] { return calibrate::plan(given.plan); }; });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -182,6 +210,7 @@ int main(int argc, char** argv) {
   add_light(app, common, given, work);
   add_dots(app, common, work);
   add_forces(app, common, given, work);
+  add_plan(app, given, work);
   app.add_subcommand("all",
                      "everything that a folder has pictures of: plate/, plate_raised/, pad/, rim/, "
                      "with about.json; writes its sensor.json")
