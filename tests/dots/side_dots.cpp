@@ -293,12 +293,12 @@ TEST_CASE("side dots: without half of the dots none is told, and the next frame 
   SideDots dots = free_dots();
   REQUIRE(dots(bytes_of(loaded_picture())).ok());
   const auto dark = dots(Bytes(side, side, 40));
-  CHECK(dark.status == SideDotsStatus::lost);
+  CHECK(dark.status == DotFollowerStatus::lost);
   CHECK(seen(dots) == 0);
   CHECK(dots(bytes_of(Print{.load = 0.1}.picture())).ok());
   CHECK(worst(dots, {.load = 0.1}) < 0.1);
   test::Image<float> broken(side, side, std::nanf(""));
-  CHECK(dots(broken).status == SideDotsStatus::lost);
+  CHECK(dots(broken).status == DotFollowerStatus::lost);
 }
 
 TEST_CASE("side dots: mistakes are refused, and a frame allocates nothing") {
@@ -314,11 +314,11 @@ TEST_CASE("side dots: mistakes are refused, and a frame allocates nothing") {
   rows[2].count = 53;  // another print
   const SideDots other = construct();
   CHECK(test::begins_with(other.refusal(), "the row of side dots at 6 mm from the rim shows"));
-  CHECK(SideDots(other)(free).status == SideDotsStatus::refused);
+  CHECK(SideDots(other)(free).status == DotFollowerStatus::refused);
   CHECK(!SideDots(Bytes(side, side, 90), camera, 11.5, print.rows()).ok());
 
   SideDots dots = free_dots();
-  CHECK(dots(Bytes(side, side - 1, 90)).status == SideDotsStatus::refused);
+  CHECK(dots(Bytes(side, side - 1, 90)).status == DotFollowerStatus::refused);
   const Bytes frame = bytes_of(loaded_picture());
   const long before = test::allocations();
   const auto first = dots(frame), second = dots(free);

@@ -11,22 +11,18 @@
 //   SideDots side(green_of_free_frame, camera, base_radius_mm, rows);
 //   if (side.ok() && side(green_of_frame).ok()) { ... side.px()[k], side.sd_px()[k] ... }
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
-#include "fingerpad/dots/detail/dot_locator.hpp"
+#include "fingerpad/dots/detail/mark_follower.hpp"
 #include "fingerpad/dots/detail/side_rings.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/dots/dot_follower.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -48,22 +44,8 @@ inline std::string check(const SideRow& row) {
                 {"first_angle_rad", row.first_angle_rad, within(-10, 10)}});
 }
 
-enum class SideDotsStatus : std::uint8_t {
-  ok,
-  lost,     ///< fewer than half of the dots: none is told, and the next frame begins anew
-  refused,  ///< image of another size, or the free image did not show the rows
-};
-inline constexpr std::array<const char*, 3> side_dots_status_names = {"ok", "lost", "refused"};
-
-struct [[nodiscard]] SideDotsResult {
-  SideDotsStatus status = SideDotsStatus::refused;
-  Index found = 0;     ///< dots located in this frame
-  Index expected = 0;  ///< dots located on the free pad
-
-  bool ok() const { return status == SideDotsStatus::ok; }
-};
-
-/// The object is the state: copy it to return to a frame. One object a thread.
+/// The object is the state: copy it to return to a frame. One object a thread. A frame with fewer
+/// than half of the dots is lost: none is told, and the next frame begins anew.
 class SideDots {
  public:
   using Point = Point2<double>;
@@ -87,12 +69,9 @@ class SideDots {
               "more than that of the row before");
       all += static_cast<std::size_t>(rows[r].count);
     }
-    const Rings rings{camera, base_radius_mm, rows};
-    marks_.resize(all);
-    px_.assign(all, missing());
+    px_.assign(all, detail::MarkFollower::missing());
     sd_px_.assign(all, not_a_number<double>());
-    residuals_.resize(all);
-    refusal_ = learn(as_view(free_image), rings);
+    refusal_ = learn(as_view(free_image), {camera, base_radius_mm, rows});
     px_ = free_px();
   }
 
@@ -102,11 +81,24 @@ class SideDots {
 
   /// The dots of the next frame: px() and sd_px(). O(dots x pixels of a dot); allocates nothing.
   template <grid Image>
-  SideDotsResult operator()(const Image& image) {
+  DotFollowerResult operator()(const Image& image) {
     if (!ok() || fingerpad::rows(image) != image_rows_ || fingerpad::cols(image) != image_cols_) {
       return {};
     }
-    return look(as_view(image));
+    DotFollowerResult result;
+    result.expected = dots_.count();
+    result.found = dots_.look(as_view(image));
+    const bool good = 2 * result.found >= result.expected;
+    result.status = good ? DotFollowerStatus::ok : DotFollowerStatus::lost;
+    dots_.keep(good);
+    for (std::size_t k = 0; k < px_.size(); ++k) {
+      px_[k] = dots_[k].found ? dots_[k].place : detail::MarkFollower::missing();
+      sd_px_[k] = dots_[k].found ? dots_[k].sd_px : not_a_number<double>();
+    }
+    if (!good) {
+      dots_.expect([](std::size_t) { return detail::MarkFollower::missing(); });
+    }
+    return result;
   }
 
   /// Of the last frame, row by row; NaN for a lost dot. First those of the free pad.
@@ -118,418 +110,149 @@ class SideDots {
   std::vector<Point> free_px() const {
     std::vector<Point> places;
     for (std::size_t k = 0; k < px_.size(); ++k) {
-      places.push_back(marks_[k].exists ? marks_[k].free : missing());
+      places.push_back(dots_[k].free);
     }
     return places;
   }
   /// The longer half axis of a dot on the free pad, with its blurred edge, px.
-  double reach_px() const { return reach_px_; }
+  double reach_px() const {
+    double reach_px = 0;
+    for (std::size_t k = 0; k < px_.size(); ++k) {
+      reach_px = dots_[k].exists ? (std::max)(reach_px, norm(dots_[k].map.jb)) : reach_px;
+    }
+    return reach_px + dots_.edge_px();
+  }
 
  private:
-  static constexpr std::size_t around = 18;  ///< neighbours that say how the print is deformed
-  static constexpr std::size_t terms = 6;    ///< of a polynomial of second order
-  static constexpr int tries = 8;            ///< in which lost dots are tried again
-  static constexpr double max_off = 0.3;     ///< distances to the next dot
-  static constexpr double max_jump = 0.45;   ///< between a dot and the row before, likewise
-  static constexpr double bias_px = 0.01;    ///< rms of the centers in pictures without noise
-
-  struct Mark {
-    bool exists = false;  ///< on the free pad
-    bool found = false;   ///< in this frame
-    bool placed = false;  ///< in this frame, found or not
-    Point free = missing(), last = missing(), velocity = {0, 0};
-    Point place = missing();  ///< found, else where it would be
-    Point news = {0, 0};      ///< place less what last motion made expect
-    detail::DiscMap map = {{1, 0}, {0, 1}};
-    Point slope = {0, 0};
-    double contrast = 0, light = 0, residual = 0, residual_ratio = 0;  ///< as in DotFollower
-    double next_px = 0;                                                ///< distance to the next dot
-    double look_px = 0;  ///< so far around a dot it may be looked for: beyond the rim it is dark
-    double sd_px = 0;
-    std::size_t row = 0;  ///< its first dot
-    /// Displacement and its first and second derivatives by disc coordinates: weights of the
-    /// neighbours' displacements.
-    std::array<std::size_t, around> neighbours = {};
-    std::array<std::array<double, around>, terms> weights = {};
-  };
-  using Displacement = std::array<Point, terms>;
-
   using Rings = detail::SideRings<SideRow>;
+  using Mark = detail::MarkFollower::Mark;
 
-  static constexpr Point missing() { return {not_a_number<double>(), not_a_number<double>()}; }
+  /// A row of dots on its ring.
+  struct Ring {
+    const Rings& rings;
+    const SideRow& row;
+    double rho_mm;
+    std::size_t count = static_cast<std::size_t>(row.count);
+
+    Point at(double k) const { return rings.at(rho_mm, Rings::angle(row, k)); }
+    Point outward(double k) const {
+      const Point out = rings.at(rho_mm + 0.01, Rings::angle(row, k)) - at(k);
+      return out / norm(out);
+    }
+    double spacing_px() const { return norm(at(1) - at(0)); }
+    /// Along outward() and around, how far dot k is off the ring.
+    Point off(std::size_t k, const Point& px) const {
+      const Point out = outward(double(k)), off = px - at(double(k));
+      return {dot(off, out), out.x * off.y - out.y * off.x};
+    }
+    /// The median of what the dots beside dot k are off; NaN if they are few.
+    Point off_beside(const std::vector<Point>& offs, std::size_t k) const {
+      std::vector<double> xs, ys;
+      for (std::size_t step = 1; step <= 4; ++step) {
+        for (const Point& off : {offs[(k + step) % count], offs[(k + count - step) % count]}) {
+          if (is_finite(off)) {
+            xs.push_back(off.x);
+            ys.push_back(off.y);
+          }
+        }
+      }
+      return xs.size() < 3 ? detail::MarkFollower::missing()
+                           : Point{detail::median(xs), detail::median(ys)};
+    }
+  };
 
   /// Finds the rows on the free pad; why not, or "".
   template <class View>
   std::string learn(const View& image, const Rings& rings) {
     const std::vector<double> radii = rings.radii(image);
-    for (const bool free_edge : {true, false}) {  // one blur for all dots
-      std::vector<double> edges;
-      std::size_t first = 0;
-      for (std::size_t r = 0; r < radii.size(); ++r) {
-        const auto count = static_cast<std::size_t>(rings.rows[r].count);
-        for (std::size_t k = 0; k < count; ++k) {
-          marks_[first + k].row = first;
-          const double edge = learn_dot(image, rings, r, radii[r], k, first + k, free_edge);
-          if (marks_[first + k].exists) {
-            edges.push_back(edge);
-          }
-        }
-        drop_strange(first, count);
-        const auto seen = std::count_if(marks_.begin() + std::ptrdiff_t(first),
-                                        marks_.begin() + std::ptrdiff_t(first + count),
-                                        [](const Mark& m) { return m.exists; });
-        if (2 * seen < std::ptrdiff_t(count)) {
-          return detail::print("the row of side dots at %g mm from the rim shows %d of %d dots",
-                               rings.rows[r].arc_mm, static_cast<int>(seen),
-                               static_cast<int>(count));
-        }
-        first += count;
+    std::vector<detail::MarkFollower::Start> starts;
+    for (std::size_t r = 0; r < radii.size(); ++r) {
+      add_starts(image, Ring{rings, rings.rows[r], radii[r]}, r, starts);
+    }
+    dots_.learn(image, starts);
+    std::size_t first = 0;
+    for (std::size_t r = 0; r < radii.size(); ++r) {
+      const Ring ring{rings, rings.rows[r], radii[r]};
+      const std::size_t seen = drop_strange(ring, first);
+      if (2 * seen < ring.count) {
+        return detail::print("the row of side dots at %g mm from the rim shows %d of %d dots",
+                             ring.row.arc_mm, static_cast<int>(seen), static_cast<int>(ring.count));
       }
-      edge_px_ = free_edge ? median(edges) : edge_px_;
+      first += ring.count;
     }
-    for (Mark& m : marks_) {
-      expected_ += m.exists ? 1 : 0;
-      m.place = m.last = m.free;
-      reach_px_ = m.exists ? (std::max)(reach_px_, norm(m.map.jb) + edge_px_) : reach_px_;
+    for (Index k = 0; k < rings.rows[0].count; ++k) {  // the clamped rim is a neighbour, too
+      dots_.add_still(Ring{rings, rings.rows[0], rings.base_radius_mm}.at(double(k)));
     }
-    add_rim(rings);
-    for (std::size_t k = 0; k < px_.size(); ++k) {
-      if (marks_[k].exists && !weigh_neighbours(k)) {
-        marks_[k].exists = false;
-        --expected_;
-      }
-    }
+    dots_.connect();
     return "";
   }
 
-  /// Fits the disc of one dot with its shape.
+  /// The dots of a row are looked for where the ring is darkest nearby, as those beside each other
+  /// agree. Their shape is a first guess.
   template <class View>
-  double learn_dot(const View& image,
-                   const Rings& rings,
-                   std::size_t r,
-                   double rho_mm,
-                   std::size_t k,
-                   std::size_t to,
-                   bool free_edge) {
-    const SideRow& row = rings.rows[r];
-    const double angle = Rings::angle(row, static_cast<double>(k));
-    const Point at = rings.at(rho_mm, angle), out = rings.at(rho_mm + 0.01, angle) - at;
-    const Point outward = out / norm(out);
-    const double radius_px = row.diameter_mm / 2 / rings.camera.pitch_mm;
-    const double spacing_px =
-        2 * std::numbers::pi * rho_mm / rings.camera.pitch_mm / static_cast<double>(row.count);
-    Mark& m = marks_[to];
-    Point start = at;
-    if (free_edge) {
-      m.next_px = spacing_px;
-      m.look_px =
-          (std::min)(0.45 * spacing_px, norm(rings.at(rings.base_radius_mm, angle) - at) - 2);
-      m.light = 0;
-      for (const double beside : {-0.5, 0.5}) {
-        m.light +=
-            0.5 * detail::light_at(
-                      image, rings.at(rho_mm, Rings::angle(row, static_cast<double>(k) + beside)));
-      }
-      start = detail::darkest(image, 0.75 * m.light, 1, at, m.look_px);
-    } else if (is_finite(m.free)) {
-      start = m.free;
+  static void add_starts(const View& image,
+                         const Ring& ring,
+                         std::size_t row,
+                         std::vector<detail::MarkFollower::Start>& to) {
+    const Camera<double>& camera = ring.rings.camera;
+    const double radius_px = ring.row.diameter_mm / 2 / camera.pitch_mm;
+    const double half_px = 0.45 * ring.spacing_px();
+    const double rim_px = (ring.rings.base_radius_mm - ring.rho_mm) / camera.pitch_mm;
+    std::vector<Point> offs;
+    for (std::size_t k = 0; k < ring.count; ++k) {
+      const double light = 0.5 * (detail::light_at(image, ring.at(double(k) - 0.5)) +
+                                  detail::light_at(image, ring.at(double(k) + 0.5)));
+      const Point dark = detail::darkest(image, 0.75 * light, 1, ring.at(double(k)),
+                                         (std::min)(half_px, rim_px - 2));
+      offs.push_back(ring.off(k, dark));
     }
-    m.map = {0.7 * radius_px * outward, radius_px * Point{-outward.y, outward.x}};
-    double edge_px = free_edge ? 1.5 : edge_px_;
-    const detail::DiscFit fit = locator_.fit_shape(image, start, m.map, edge_px, free_edge);
-    m.exists = fit.good && fit.contrast > 0.05 && norm(fit.center - at) < 0.45 * spacing_px;
-    m.free = m.exists ? fit.center : missing();
-    m.slope = fit.slope;
-    m.light = m.exists ? fit.light : m.light;
-    m.contrast = fit.contrast;
-    m.residual = fit.residual / std::fabs(fit.contrast * fit.light);
-    m.news = Point{dot(fit.center - at, outward),
-                   outward.x * (fit.center - at).y - outward.y * (fit.center - at).x};
-    return edge_px;
+    for (std::size_t k = 0; k < ring.count; ++k) {
+      const Point out = ring.outward(double(k)), around = {-out.y, out.x};
+      const Point off = ring.off_beside(offs, k);
+      to.push_back({ring.at(double(k)) + off.x * out + off.y * around,
+                    {0.7 * radius_px * out, radius_px * around},
+                    half_px,
+                    row});
+    }
   }
 
   /// Leaves out what is not as large and as dark as the row's dots, or does not lie as the dots
-  /// beside it do: a dot of the grid, dirt.
-  void drop_strange(std::size_t first, std::size_t count) {
-    std::vector<double> sizes, contrasts;
+  /// beside it do: a dot of the grid, dirt. How many are left.
+  std::size_t drop_strange(const Ring& ring, std::size_t first) {
     const auto size = [](const Mark& m) {
       return std::fabs(m.map.ja.x * m.map.jb.y - m.map.ja.y * m.map.jb.x);
     };
-    for (std::size_t k = first; k < first + count; ++k) {
-      if (marks_[k].exists) {
-        sizes.push_back(size(marks_[k]));
-        contrasts.push_back(marks_[k].contrast);
+    std::vector<double> sizes, contrasts;
+    std::vector<Point> offs;
+    for (std::size_t k = 0; k < ring.count; ++k) {
+      const Mark& m = dots_[first + k];
+      offs.push_back(ring.off(k, m.free));
+      if (m.exists) {
+        sizes.push_back(size(m));
+        contrasts.push_back(m.contrast);
       }
     }
-    const double usual = median(sizes), dark = median(contrasts);
-    std::vector<char> strange(count, 0);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Mark& m = marks_[first + k];
-      std::vector<double> xs, ys;
-      for (std::size_t step = 1; step <= 4; ++step) {
-        for (const std::size_t other : {(k + step) % count, (k + count - step) % count}) {
-          if (marks_[first + other].exists) {
-            xs.push_back(marks_[first + other].news.x);
-            ys.push_back(marks_[first + other].news.y);
-          }
-        }
-      }
+    const double usual = detail::median(sizes), dark = detail::median(contrasts);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < ring.count; ++k) {
+      const Mark& m = dots_[first + k];
       const double share = size(m) / usual, tone = m.contrast / dark;
       const bool alike = share > 0.7 && share < 1.4 && tone > 0.6 && tone < 1.5;
-      const Point off = xs.size() < 3 ? missing() : m.news - Point{median(xs), median(ys)};
-      strange[k] = !alike || !(norm(off) < 0.15 * m.next_px) ? 1 : 0;
+      const double off_px = norm(offs[k] - ring.off_beside(offs, k));
+      if (m.exists && dark > 0.05 && alike && off_px < 0.15 * ring.spacing_px()) {
+        ++left;
+      } else {
+        dots_.drop(first + k);
+      }
     }
-    for (std::size_t k = 0; k < count; ++k) {
-      Mark& m = marks_[first + k];
-      m.exists = m.exists && strange[k] == 0;
-      m.free = m.exists ? m.free : missing();
-    }
+    return left;
   }
 
-  /// The clamped rim does not move: it is a neighbour, too.
-  void add_rim(const Rings& rings) {
-    const SideRow& row = rings.rows.front();
-    for (Index k = 0; k < row.count; ++k) {
-      Mark m;
-      m.exists = m.placed = true;
-      m.free = m.last = m.place =
-          rings.at(rings.base_radius_mm, Rings::angle(row, static_cast<double>(k)));
-      marks_.push_back(m);
-    }
-  }
-
-  /// Mean displacement of the neighbours nearer to the rim, whose dots cannot be confused.
-  Point outer_displacement(const Mark& m) const {
-    Point sum = {0, 0};
-    double count = 0;
-    for (const std::size_t n : m.neighbours) {
-      if (n < m.row || n >= px_.size()) {
-        sum += marks_[n].place - marks_[n].free;
-        count += 1;
-      }
-    }
-    return count > 0 ? sum / count : sum;
-  }
-
-  /// The nearest neighbours by distance on the print, a third of them of the own row, and least
-  /// squares of a polynomial.
-  bool weigh_neighbours(std::size_t k) {
-    Mark& m = marks_[k];
-    const double det = m.map.ja.x * m.map.jb.y - m.map.ja.y * m.map.jb.x;
-    const auto on_print = [&](const Point& px) {
-      const Point off = px - m.free;
-      return Point{(off.x * m.map.jb.y - off.y * m.map.jb.x) / det,
-                   (m.map.ja.x * off.y - m.map.ja.y * off.x) / det};
-    };
-    std::vector<std::size_t> others;
-    for (std::size_t n = 0; n < marks_.size(); ++n) {
-      if (n != k && marks_[n].exists) {
-        others.push_back(n);
-      }
-    }
-    std::sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) {
-      return norm(on_print(marks_[a].free)) < norm(on_print(marks_[b].free));
-    });
-    m.next_px = (std::numeric_limits<double>::infinity)();
-    std::size_t chosen = 0, own = 0;
-    for (const std::size_t other : others) {
-      const bool of_row = other < px_.size() && marks_[other].row == m.row;
-      if (chosen < around && (!of_row || own < around / 3)) {
-        m.neighbours[chosen++] = other;
-        own += of_row ? 1 : 0;
-        const double off_px = norm(marks_[other].free - m.free);
-        m.next_px = other < px_.size() ? (std::min)(m.next_px, off_px) : m.next_px;
-      }
-    }
-    if (chosen < around) {
-      return false;
-    }
-    const double scale = norm(on_print(marks_[m.neighbours[around / 2]].free));
-    std::array<std::array<double, terms>, around> rows;
-    std::array<double, around> weight;
-    detail::SmallMatrix<double, terms> normal = detail::zero_matrix<double, terms>();
-    for (std::size_t n = 0; n < around; ++n) {
-      const Point v = on_print(marks_[m.neighbours[n]].free) / scale;
-      rows[n] = {1, v.x, v.y, v.x * v.x / 2, v.x * v.y, v.y * v.y / 2};
-      weight[n] = 1 / (0.25 + dot(v, v));
-      for (std::size_t i = 0; i < terms; ++i) {
-        for (std::size_t j = 0; j < terms; ++j) {
-          normal[i][j] += weight[n] * rows[n][i] * rows[n][j];
-        }
-      }
-    }
-    for (std::size_t i = 3; i < terms; ++i) {  // neighbours in two lines say nothing of a bend
-      normal[i][i] += 0.01;
-    }
-    const detail::NormalEquations<double, terms> equations(normal);
-    const std::array<double, terms> unit = {
-        1, 1 / scale, 1 / scale, square(1 / scale), square(1 / scale), square(1 / scale)};
-    for (std::size_t n = 0; n < around && equations.good; ++n) {
-      const auto column = equations.solve(rows[n]);
-      for (std::size_t i = 0; i < terms; ++i) {
-        m.weights[i][n] = column[i] * weight[n] * unit[i];
-      }
-    }
-    return equations.good && is_finite(m.next_px);
-  }
-
-  /// How the neighbours are displaced from the free pad; those not placed yet are taken to have
-  /// this dot's news.
-  Displacement displacement(const Mark& m) const {
-    Displacement d{};
-    for (std::size_t n = 0; n < around; ++n) {
-      const Mark& other = marks_[m.neighbours[n]];
-      const Point at = other.placed ? other.place : other.last + other.velocity + m.news;
-      for (std::size_t i = 0; i < terms; ++i) {
-        d[i] += m.weights[i][n] * (at - other.free);
-      }
-    }
-    return d;
-  }
-
-  template <class View>
-  SideDotsResult look(const View& image) {
-    const auto count = px_.size();
-    if (noise_ == 0) {  // how much noisier frames are than the free picture
-      noise_ = (std::numeric_limits<double>::infinity)();
-      (void)pass(image);
-      keep_noise();
-    }
-    Index found = pass(image);
-    for (std::size_t k = 0; k < count; ++k) {
-      Mark& m = marks_[k];
-      if (m.found && norm(m.place - m.free - displacement(m)[0]) > max_off * m.next_px) {
-        m.found = false;
-        --found;
-      }
-    }
-    const bool good = 2 * found >= expected_;
-    if (good) {
-      keep_noise();
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      Mark& m = marks_[k];
-      if (m.exists && !m.found) {
-        m.place = m.free + displacement(m)[0];
-      }
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      Mark& m = marks_[k];
-      m.velocity = good ? m.place - m.last : Point{0, 0};
-      m.last = good ? m.place : m.free;
-      m.found = m.found && good;
-      px_[k] = m.found ? m.place : missing();
-      sd_px_[k] = m.found ? m.sd_px : not_a_number<double>();
-    }
-    return {good ? SideDotsStatus::ok : SideDotsStatus::lost, found, expected_};
-  }
-
-  /// Looks for all dots, from the rim inward; how many are found. Those lost are tried again where
-  /// their neighbours put them, as long as that finds any.
-  template <class View>
-  Index pass(const View& image) {
-    const auto count = px_.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      marks_[k].found = marks_[k].placed = false;
-    }
-    Index found = 0, before = -1;
-    for (int round = 0; round < tries && found < expected_ && (round < 3 || found > before);
-         ++round) {
-      before = found;
-      for (std::size_t k = 0; k < count; ++k) {
-        Mark& m = marks_[k];
-        if (m.exists && !m.found) {
-          m.news = news_of_neighbours(m, round == 0);
-          m.place = m.last + m.velocity + m.news;
-          found += locate(image, m, round > 1) ? 1 : 0;
-        }
-      }
-    }
-    for (std::size_t k = 0; k < count; ++k) {  // with the shape that all neighbours give
-      if (marks_[k].found && norm(marks_[k].news) > 0.25) {
-        found -= locate(image, marks_[k], false) ? 0 : 1;
-      }
-    }
-    return found;
-  }
-
-  /// What a dot's neighbours say of its motion beyond the last: the mean of their news, or of their
-  /// motion where the last motion may have misled; of the row before if none is found.
-  Point news_of_neighbours(const Mark& m, bool moves_on) const {
-    Point sum = {0, 0};
-    double count = 0;
-    for (const std::size_t n : m.neighbours) {
-      const Mark& other = marks_[n];
-      if (other.found && n < px_.size()) {
-        sum += moves_on ? other.news : other.place - other.last - m.velocity;
-        count += 1;
-      }
-    }
-    const Point alone =
-        moves_on ? Point{0, 0} : m.free + outer_displacement(m) - m.last - m.velocity;
-    return count > 0 ? sum / count : alone;
-  }
-
-  /// Looks for a dot at its place.
-  template <class View>
-  bool locate(const View& image, Mark& m, bool wide) {
-    constexpr double least_contrast = 0.6, most_contrast = 1.5, most_residual = 3;
-    const Displacement d = displacement(m);
-    const detail::DiscMap map = {m.map.ja + d[1], m.map.jb + d[2], d[3], d[4], d[5]};
-    const double reach = max_off * m.next_px;
-    const double threshold = m.light * (1 - 0.4 * m.contrast);
-    const Point guess = m.place;
-    const Point start =
-        wide ? detail::darkest(image, threshold, 1, guess, (std::min)(reach, m.look_px)) : guess;
-    const detail::DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
-    const double contrast = fit.contrast / m.contrast;
-    m.residual_ratio = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
-    m.placed = true;
-    m.found = fit.good && contrast > least_contrast && contrast < most_contrast &&
-              norm(fit.center - guess) < reach && m.residual_ratio < most_residual * noise_ &&
-              norm(fit.center - m.free - outer_displacement(m)) < max_jump * m.next_px;
-    if (m.found) {
-      m.place = fit.center;
-      m.news = m.place - m.last - m.velocity;
-      m.slope = fit.slope;
-      m.light = fit.light;
-      m.sd_px = std::sqrt(squared_norm(fit.sd_px) / 2 + square(bias_px));
-    }
-    return m.found;
-  }
-
-  /// The median residual of those found; half of the dots are needed.
-  void keep_noise() {
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < px_.size(); ++k) {
-      if (marks_[k].found) {
-        residuals_[count++] = marks_[k].residual_ratio;
-      }
-    }
-    const auto first = residuals_.begin(), middle = first + std::ptrdiff_t(count / 2);
-    std::nth_element(first, middle, first + std::ptrdiff_t(count));
-    const bool enough = count > 0 && 2 * Index(count) >= expected_;
-    noise_ = enough ? (std::max)(*middle, 1.0) : is_finite(noise_) ? noise_ : 0;
-  }
-
-  /// NaN of none.
-  static double median(std::vector<double>& values) {
-    if (values.empty()) {
-      return not_a_number<double>();
-    }
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
-
-  Index image_rows_, image_cols_, expected_ = 0;
-  double edge_px_ = 1.5, reach_px_ = 0,
-         noise_ = 0;         ///< noise: of frames to that of the free picture
-  std::vector<Mark> marks_;  ///< the dots, then the rim
+  Index image_rows_, image_cols_;
+  detail::MarkFollower dots_{18};  ///< the dots, then the rim
   std::vector<Point> px_;
-  std::vector<double> sd_px_, residuals_;
+  std::vector<double> sd_px_;
   std::string refusal_;
-  detail::DotLocator locator_;
 };
 
 }  // namespace v0

@@ -104,7 +104,7 @@ class DotLocator {
  public:
   static constexpr int side = 64;  ///< largest window, px
   /// The window reaches this far beyond the blurred edge, px.
-  static constexpr double around_px = 1.6;
+  static constexpr double around_px = 1.0;
 
   DotLocator() : cells_(std::size_t(side) * side) {}
 
