@@ -35,22 +35,22 @@ struct DiscRim {
     const double det = map.ja.x * map.jb.y - map.jb.x * map.ja.y;
     const double ax = map.jb.y / det, ay = -map.jb.x / det;
     const double bx = -map.ja.y / det, by = map.ja.x / det;
-    xx = ax * ax + bx * bx;
-    xy = 2 * (ax * ay + bx * by);
-    yy = ay * ay + by * by;
+    xx = float(ax * ax + bx * bx);
+    xy = float(2 * (ax * ay + bx * by));
+    yy = float(ay * ay + by * by);
     const auto a_of = [&](const Point2<double>& q) { return ax * q.x + ay * q.y; };
     const auto b_of = [&](const Point2<double>& q) { return bx * q.x + by * q.y; };
     const double aaa = a_of(map.qaa), aab = 2 * a_of(map.qab) + b_of(map.qaa);
     const double abb = a_of(map.qbb) + 2 * b_of(map.qab), bbb = b_of(map.qbb);
     // aaa a^3 + aab a^2 b + abb a b^2 + bbb b^3 with a = ax x + ay y, b = bx x + by y
-    xxx = -(aaa * ax * ax * ax + aab * ax * ax * bx + abb * ax * bx * bx + bbb * bx * bx * bx);
-    xxy = -(3 * aaa * ax * ax * ay + aab * (ax * ax * by + 2 * ax * ay * bx) +
-            abb * (bx * bx * ay + 2 * bx * by * ax) + 3 * bbb * bx * bx * by);
-    xyy = -(3 * aaa * ax * ay * ay + aab * (ay * ay * bx + 2 * ax * ay * by) +
-            abb * (by * by * ax + 2 * bx * by * ay) + 3 * bbb * bx * by * by);
-    yyy = -(aaa * ay * ay * ay + aab * ay * ay * by + abb * ay * by * by + bbb * by * by * by);
+    xxx = -float(aaa * ax * ax * ax + aab * ax * ax * bx + abb * ax * bx * bx + bbb * bx * bx * bx);
+    xxy = -float(3 * aaa * ax * ax * ay + aab * (ax * ax * by + 2 * ax * ay * bx) +
+                 abb * (bx * bx * ay + 2 * bx * by * ax) + 3 * bbb * bx * bx * by);
+    xyy = -float(3 * aaa * ax * ay * ay + aab * (ay * ay * bx + 2 * ax * ay * by) +
+                 abb * (by * by * ax + 2 * bx * by * ay) + 3 * bbb * bx * by * by);
+    yyy = -float(aaa * ay * ay * ay + aab * ay * ay * by + abb * ay * by * by + bbb * by * by * by);
   }
-  double xx, xy, yy, xxx, xxy, xyy, yyy;
+  float xx, xy, yy, xxx, xxy, xyy, yyy;
 };
 
 struct DiscFit {
@@ -123,7 +123,7 @@ class DotLocator {
     const DiscRim rim(map);
     std::array<Line, side> lines;
     for (Index i = 0; i < rows_; ++i) {
-      lines[std::size_t(i)] = line(rim, double(y0_ + i) - center.y, slope);
+      lines[std::size_t(i)] = line(rim, float(double(y0_ + i) - center.y), slope);
     }
     for (Index j = 0; j < stride_; j += step_) {
       add<Row>(lines, center.x, j, float(edge_px), sums);
@@ -162,8 +162,8 @@ class DotLocator {
   template <class View>
   bool load(const View& image, const Point2<double>& center, const DiscMap& map, double edge_px) {
     const double beyond = edge_px + around_px;
-    const double half_x = std::hypot(map.ja.x, map.jb.x) + beyond;
-    const double half_y = std::hypot(map.ja.y, map.jb.y) + beyond;
+    const double half_x = norm(Point2<double>{map.ja.x, map.jb.x}) + beyond;
+    const double half_y = norm(Point2<double>{map.ja.y, map.jb.y}) + beyond;
     const double left = std::ceil(center.x - half_x), top = std::ceil(center.y - half_y);
     const double right = std::floor(center.x + half_x), bottom = std::floor(center.y + half_y);
     if (!(left >= 0 && top >= 0 && right < double(image.cols()) && bottom < double(image.rows())) ||
@@ -177,12 +177,16 @@ class DotLocator {
     step_ = lanes_in<Row, float>;
     stride_ = (cols_ + step_ - 1) / step_ * step_;
     base_ = float(image(y0_, x0_));
-    for (Index i = 0; i < rows_; ++i) {
-      float* const to = cells_.data() + i * stride_;
-      for (Index j = 0; j < cols_; ++j) {
-        to[j] = float(image(y0_ + i, x0_ + j)) - base_;
+    float* to = cells_.data();
+    const float base = base_;  // a store of floats could change the members
+    const Index x0 = x0_, cols = cols_, stride = stride_;
+    for (Index i = y0_; i < y0_ + rows_; ++i, to += stride) {
+      for (Index j = 0; j < cols; ++j) {
+        to[j] = float(image(i, x0 + j)) - base;
       }
-      std::fill(to + cols_, to + stride_, 0.0F);
+      for (Index j = cols; j < stride; ++j) {
+        to[j] = 0;
+      }
     }
     return true;
   }
@@ -204,7 +208,7 @@ class DotLocator {
       ProductSums<double, n + 1> sums;
       for (Index i = 0; i < rows_; ++i) {
         const double y = double(y0_ + i) - center.y;
-        const Line l = line(rim, y, slope);
+        const Line l = line(rim, float(y), slope);
         for (Index j = 0; j < cols_; ++j) {
           const double x = double(x0_ + j) - center.x;
           const Edge<float> e = edge<float>(l, float(x), float(edge_px));
@@ -279,25 +283,24 @@ class DotLocator {
     float b0, b1, b2;         ///< its derivative by y
     float light, light_x;     ///< relative to that at the center
   };
-  static Line line(const DiscRim& r, double y, const Point2<double>& slope) {
-    return {float(y),
-            float(y * y * (r.yy + r.yyy * y)),
-            float(y * (r.xy + r.xyy * y)),
-            float(r.xx + r.xxy * y),
-            float(r.xxx),
-            float(y * (2 * r.yy + 3 * r.yyy * y)),
-            float(r.xy + 2 * r.xyy * y),
-            float(r.xxy),
-            float(1 + slope.y * y),
+  static Line line(const DiscRim& r, float y, const Point2<double>& slope) {
+    return {y,
+            y * y * (r.yy + r.yyy * y),
+            y * (r.xy + r.xyy * y),
+            r.xx + r.xxy * y,
+            r.xxx,
+            y * (2 * r.yy + 3 * r.yyy * y),
+            r.xy + 2 * r.xyy * y,
+            r.xxy,
+            1 + float(slope.y) * y,
             float(slope.x)};
   }
 
   /// The picture of the disc at offsets x from its center.
   template <class V>
   [[gnu::always_inline]] static Edge<V> edge(const Line& l, const V& x, float width) {
-    const V tiny = V{} + 1e-6F, one = V{} + 1.0F;
-    V square = ((l.a3 * x + l.a2) * x + l.a1) * x + l.a0;
-    square = square > tiny ? square : tiny;
+    const V one = V{} + 1.0F;
+    const V square = ((l.a3 * x + l.a2) * x + l.a1) * x + (l.a0 + 1e-6F);
     const V fx = (3 * l.a3 * x + 2 * l.a2) * x + l.a1;
     const V fy = (l.b2 * x + l.b1) * x + l.b0;
     const V inverse = inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
@@ -371,37 +374,12 @@ class DotLocator {
       s19 += hx * v;
       s20 += hy * v;
     }
-    const std::array<V, terms> all = {s0,
-                                      s1,
-                                      s2,
-                                      s3,
-                                      s4,
-                                      s5,
-                                      s6,
-                                      s7,
-                                      s8,
-                                      s9,
-                                      s10,
-                                      s11,
-                                      s12,
-                                      s13,
-                                      s14,
-                                      s15,
-                                      s16,
-                                      s17,
-                                      s18,
-                                      s19,
-                                      s20,
-                                      V(s0 * x),
-                                      V(s0 * x * x),
-                                      V(s1 * x),
-                                      V(s3 * x),
-                                      V(s6 * x),
-                                      V(s10 * x),
-                                      V(s12 * x)};
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      to[k] += all[k];
-    }
+    const auto add_each = [&to](const auto&... sums) {
+      std::size_t k = 0;
+      ((to[k++] += sums), ...);
+    };
+    add_each(s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14, s15, s16, s17, s18,
+             s19, s20, s0 * x, s0 * x * x, s1 * x, s3 * x, s6 * x, s10 * x, s12 * x);
   }
 
   /// The sum of the lanes, by halves.
