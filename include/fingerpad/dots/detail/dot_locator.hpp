@@ -303,9 +303,9 @@ class DotLocator {
     const V square = ((l.a3 * x + l.a2) * x + l.a1) * x + (l.a0 + 1e-6F);
     const V fx = (3 * l.a3 * x + 2 * l.a2) * x + l.a1;
     const V fy = (l.b2 * x + l.b1) * x + l.b0;
-    const V inverse = inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
+    const V inverse = rough_inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
     // distance from the edge, in its widths
-    const V t = (square - square * inverse_sqrt<V>(square)) * inverse * (2.0F / width);
+    const V t = (square - square * rough_inverse_sqrt<V>(square)) * inverse * (2.0F / width);
     const V above = t > -one ? t : -one;
     const V u = above < one ? above : one;
     const V uu = u * u, gap = one - uu;
