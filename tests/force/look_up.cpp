@@ -836,6 +836,7 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
       CHECK(begins_with(with(ends(), [&](auto& m) { (m.*law).to = bad; }), owner + "to = "));
     }
     CHECK(with(ends(), [&](auto& m) { (m.*law).to = missing; }) == "accepted");
+    CHECK(with(ends(), [&](auto& m) { (m.*law).slope = 0; }) == "accepted");  // of the other alone
   }
 }
 

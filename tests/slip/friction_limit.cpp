@@ -204,6 +204,10 @@ TEST_CASE("friction limit: what it learns", "[friction_limit]") {
     (void)limit(pull(0), 0.1, RatioUpdate::fresh);
     CHECK(!is_finite(limit.limit()));  // no load
   }
+  SECTION("hardly any friction is none") {
+    CHECK(!is_finite(slide(4 * 0.99e-6)));
+    CHECK(slide(4 * 1.05e-6) == Approx(1.05e-6));
+  }
   SECTION("a limit that the object holds beyond is forgotten") {
     (void)slide(1);
     const auto r = limit(pull(1.6), 0.9, RatioUpdate::fresh);

@@ -261,6 +261,25 @@ TEST_CASE("stick ratio: in space a stored frame further than U / 2 will do, with
   }
 }
 
+TEST_CASE("stick ratio: in space the newest of the stored frames that will do") {
+  const double reference_mm = reference_of(0.005);
+  SlippingPatch patch(0.6, 5.9);
+  StickRatio<> stick(21, 21, {.noise = 0.005});
+  const auto moved = [&](double x, double y) {
+    Spatial dots = patch.dots;
+    for (auto& p : dots.cells) {
+      p = {p.x + x * reference_mm, p.y + y * reference_mm, p.z};
+    }
+    return stick(dots, patch.contact);
+  };
+  (void)moved(0, 0);
+  REQUIRE(moved(0.6, 0).reference_age == 1);
+  // 0.6 U from the last frame, 0.77 U from the first one
+  const auto r = moved(0.6 + 0.6 * std::cos(100 * degree), 0.6 * std::sin(100 * degree));
+  CHECK(r.updated());
+  CHECK(r.reference_age == 1);
+}
+
 TEST_CASE("stick ratio: in space a frame at rest is compared again") {
   SlippingPatch patch;
   StickRatio<> stick(21, 21, {.noise = 0.005});
@@ -933,6 +952,29 @@ TEST_CASE("stick ratio: a contact of all dots lacks an outline once more than a 
       CHECK(r.status == (lacks ? StickStatus::no_outline : StickStatus::updated));
       CHECK(std::isnan(r.stick_ratio) == lacks);
     }
+  }
+}
+
+TEST_CASE("stick ratio: all dots that are found, but not up to each side, have an outline") {
+  for (int side = 0; side < 4; ++side) {
+    CAPTURE(side);
+    const auto without_side = [&](PointsPx dots) {
+      for (Index k = 0; k < 9; ++k) {
+        (side < 2 ? dots(side * 8, k) : dots(k, (side - 2) * 8)) = missing;
+      }
+      return dots;
+    };
+    Follower f(reference_2);
+    (void)f(without_side(shifted(0)));
+    auto dots = shifted(3);
+    for (Index i = 3; i < 6; ++i) {
+      for (Index j = 1; j < 6; ++j) {
+        dots(i, j) = shifted(0)(i, j);
+      }
+    }
+    const auto r = f(without_side(dots));
+    CHECK(10 * r.slip > r.stick + r.slip);
+    CHECK(r.status == StickStatus::updated);
   }
 }
 
