@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "calibrate/calibrations.hpp"
 #include "calibrate/shape.hpp"
+#include "calibrate/today.hpp"
 #include "common/failure.hpp"
 #include "common/images.hpp"
 #include "common/recording.hpp"
@@ -266,4 +268,95 @@ TEST_CASE("a finger of one's own: the free shape from touches", "[own]") {
   CHECK(error_mm(far) < 0.03);
   CHECK(error_mm(far) < error_mm(near));
   CHECK(far.reach_mm > 0.75 * base_mm);
+}
+
+namespace {
+
+/// The pad at a multiple of the pressure at which it was calibrated.
+calibrate::Meridian meridian_at(double pressure) {
+  return fingerpad::FreePad<double>({base_mm, 11, 0.1}).meridian(pressure * 0.016 / 0.5);
+}
+
+/// What may have happened to the finger since its calibration.
+struct Day {
+  double bright = 1, to_one_side = 0, red = 1;  ///< of the lamp and the camera, as factors
+  double pressure = 1;                          ///< over that of then
+  double moved_px = 0;
+  double dirt_mm = 0;  ///< radius of a spot
+  int dots_gone = 0;
+  double noise = 0.25;
+};
+
+/// The pad that day, with dots of 0.8 mm, 3 mm apart.
+cv::Mat free_pad_on(const Day& day, std::uint64_t seed) {
+  test::Random random(seed);
+  const DepthMap depth =
+      calibrate::depth_of_shape(camera, {size_px, size_px}, meridian_at(day.pressure));
+  const auto place = [](int i, int j, double l) {
+    return point_at(camera, double(i), double(j), l);
+  };
+  cv::Mat_<cv::Vec3w> image = picture(depth, random, day.noise);
+  for (int i = 0; i < depth.rows; ++i) {
+    for (int j = 0; j < depth.cols; ++j) {
+      const auto l = static_cast<double>(depth(i, j));
+      const auto at = place(i, j, std::isfinite(l) ? l : 0), on_plate = place(i, j, 0);
+      const double row = std::round(at.y / 3), col = std::round(at.x / 3);
+      const bool is_gone = row == 1 && col >= 0 && col < day.dots_gone;
+      const double off = std::hypot(at.x - 3 * col, at.y - 3 * row);
+      const double dot = is_gone ? 1 : 1 - 0.5 / (1 + std::exp((off - 0.4) / 0.08));
+      const double dirt = std::hypot(at.x - 5, at.y + 4) < day.dirt_mm ? 0.8 : 1;
+      const double light = dot * day.bright * (1 + day.to_one_side * on_plate.x / base_mm);
+      image(i, j)[1] = cv::saturate_cast<ushort>(light * image(i, j)[1]);
+      image(i, j)[2] = cv::saturate_cast<ushort>(light * dirt * day.red * image(i, j)[2]);
+    }
+  }
+  const cv::Matx23d moved(1, 0, day.moved_px, 0, 1, 0);
+  cv::warpAffine(image, image, moved, image.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("a finger of one's own: what has changed since the calibration, and nothing else",
+          "[own]") {
+  replay::Sensor sensor;
+  sensor.camera = camera;
+  sensor.absorption = fluid;
+  sensor.pad = {base_mm, true_meridian().front().y};
+  sensor.dots = replay::Dots{13, 13, 3, 0.8};
+  const cv::Mat reference = free_pad_on({}, 1);
+  const DepthMap free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
+  enum { brightness, slope, balance, apex, place, spots, dots };
+  /// Whether the changes `told` are told, and no other.
+  const auto of = [&](const Day& day, std::uint64_t seed, const std::vector<int>& told) {
+    const auto all = calibrate::changes(sensor, reference, free_mm, free_pad_on(day, seed));
+    REQUIRE(all.size() == 7);
+    for (int k = 0; k < 7; ++k) {
+      const auto& change = all[static_cast<std::size_t>(k)];
+      CAPTURE(change.what, change.by, change.sd);
+      CHECK(change.is_told() == (std::count(told.begin(), told.end(), k) > 0));
+    }
+    return all;
+  };
+  for (std::uint64_t seed = 2; seed < 7; ++seed) {
+    of({}, seed, {});
+    of({.noise = 1}, seed, {});
+    of({.bright = 0.97, .to_one_side = 0.01, .pressure = 1.02}, seed, {});  // costs no depth
+  }
+  CHECK(of({.bright = 0.9}, 2, {brightness})[brightness].by == Approx(-10).margin(0.3));
+  CHECK(of({.to_one_side = -0.05}, 2, {slope})[slope].by == Approx(5).margin(0.3));
+  CHECK(of({.red = 1.015}, 2, {balance})[balance].by == Approx(1.5).margin(0.2));
+  for (const double pressure : {0.8, 0.9, 1.15}) {  // leak and refill
+    const double by_mm = meridian_at(pressure).front().y - sensor.pad.apex_height_mm;
+    CAPTURE(by_mm);
+    CHECK(of({.pressure = pressure}, 2, {apex})[apex].by == Approx(by_mm).epsilon(0.15));
+  }
+  CHECK(of({.moved_px = 1.3}, 2, {place})[place].by == Approx(1.3).margin(0.2));
+  CHECK(of({.dirt_mm = 4}, 2, {spots})[spots].by > 2);
+  CHECK(of({.dots_gone = 3}, 2, {dots})[dots].by == 3);
+  // all at once
+  const auto all =
+      of({.bright = 0.9, .red = 0.98, .pressure = 0.8}, 3, {brightness, balance, apex});
+  CHECK(all[brightness].by == Approx(-10).margin(0.7));
+  CHECK(all[balance].by == Approx(-2).margin(0.5));
 }

@@ -102,6 +102,11 @@ Outcome plan(const Plan& plan);
 /// is missing or refused is named and left out. Whether all is there.
 bool all(const Path& folder);
 
+/// Compares `pictures` of the pad today, with nothing in contact, with the reference of the
+/// calibrated sensor in `folder`, and prints what has changed, by how much, and what must be done
+/// again. Whether nothing has.
+bool today(const Path& folder, const Path& pictures);
+
 /// Writes recordings of a simulated sensor to practise the calibrations on.
 void write_practice(const Path& folder);
 

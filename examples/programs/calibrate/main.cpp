@@ -67,7 +67,7 @@ struct Arguments {
   int max_radius_px = 50;
   calibrate::RimNoise rim;
   calibrate::Plan plan;
-  Path contacts, gauge, practice, finger;
+  Path contacts, gauge, practice, finger, today;
 };
 
 void add_geometry(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
@@ -202,7 +202,9 @@ int main(int argc, char** argv) {
       "whether the result is good, doubtful or refused, with the reason. docs/first_hour explains\n"
       "what to record.");
   app.require_subcommand(1);
-  app.footer("Exit status: 0 good or doubtful, 1 refused in whole or in part, 2 wrong arguments.");
+  app.footer(
+      "Exit status: 0 good or doubtful, 1 refused in whole or in part, 2 wrong arguments;\n"
+      "of today: 0 as calibrated, 1 changed.");
   Common common;
   Arguments given;
   std::function<Outcome()> work;
@@ -216,6 +218,10 @@ int main(int argc, char** argv) {
                      "with about.json; writes its sensor.json")
       ->add_option("FOLDER", given.finger, "folder of one's own finger")
       ->required();
+  auto* today = app.add_subcommand(
+      "today", "what has changed since the calibration, from pictures with nothing in contact");
+  today->add_option("FOLDER", given.finger, "folder with the calibrated sensor.json")->required();
+  today->add_option("PICTURES", given.today, "folder of today's pictures")->required();
   app.add_subcommand("practice",
                      "write recordings of a virtual sensor to try the calibrations with")
       ->add_option("DIR", given.practice, "output folder")
@@ -230,6 +236,9 @@ int main(int argc, char** argv) {
     if (!given.practice.empty()) {
       calibrate::write_practice(given.practice);
       return 0;
+    }
+    if (!given.today.empty()) {
+      return calibrate::today(given.finger, given.today) ? 0 : 1;
     }
     return given.finger.empty() ? run(common, work) : calibrate::all(given.finger) ? 0 : 1;
   } catch (const std::exception& error) {
