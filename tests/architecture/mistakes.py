@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""Compares the matrix of docs/mistakes.md with the tests, by tests/mistakes/cells.txt.
+"""Compares the matrix of docs/mistakes.md with the tests, by mistakes.txt beside it.
 
 mistakes.py ROOT            prints every breach; exit status 1 if there is one
 mistakes.py ROOT --planted  plants one breach of each rule in a copy and expects it to be found
 
-1. Each cell except a dash has a line in cells.txt, and each line has such a cell.
+1. Each cell except a dash has a line in mistakes.txt, and each line has such a cell.
 2. Each name in that line is a row or a test case of the test file named there.
 3. Each status in the cell is the expected status of one of these rows.
 4. Each number of a reason exists below the matrix.
@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-PAGE, CELLS = "docs/mistakes.md", "tests/mistakes/cells.txt"
+PAGE, CELLS = "docs/mistakes.md", "tests/architecture/mistakes.txt"
 STATUS = re.compile(r"`(\w+)`")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 CAUSE = re.compile(r'const char\* (\w+) =\s*((?:"[^"]*"\s*)+);')
@@ -83,8 +83,7 @@ def breaches(root):
         yield f"{' | '.join(key)}: no {'line in ' + CELLS if key in cells else 'cell in ' + PAGE}"
     for key in sorted(set(cells) & set(lines)):
         file, names = lines[key]
-        path = root / "tests" / (file if "/" in file else f"mistakes/{file}")
-        source = path.with_suffix(".cpp").read_text()
+        source = (root / f"tests/{file}.cpp").read_text()
         found = {name: list(bodies(source, name)) for name in names}
         for name in names:
             if not found[name]:
@@ -101,7 +100,7 @@ PLANTED = {
     "a cell without a line": (PAGE, "| six-axis force: pressure | `no_pressure` | - |", "| six-axis force: pressure | `no_pressure` | refused |"),
     "a method without lines": (PAGE, "| rim | refused or", "| brim | refused or"),
     "a row that is not there": (CELLS, "pressure in kPa", "pressure in tons"),
-    "a row that was renamed": ("tests/mistakes/force.cpp", '{"absolute pressure"', '{"pressure of all"'),
+    "a row that was renamed": ("tests/force/mistakes.cpp", '{"absolute pressure"', '{"pressure of all"'),
     "a status that no row says": (PAGE, "`no_pressure` (none)", "`no_load` (none)"),
     "a reason that is not there": (PAGE, "not noticeable (15)", "not noticeable (99)"),
 }

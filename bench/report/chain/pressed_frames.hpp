@@ -64,7 +64,7 @@ class PressedFrames {
     pad_.camera.center_x_px = static_cast<double>(cols - 1) / 2;
     pad_.camera.center_y_px = static_cast<double>(rows - 1) / 2;
     for (int k = 0; k < count; ++k) {
-      frames_.push_back(made(Plate(k, count), static_cast<std::uint64_t>(k + 1)));
+      frames_.push_back(frame(k, count));
     }
     free_dots_ = free_dots();
   }
@@ -98,6 +98,35 @@ class PressedFrames {
         {less_n - slope * less_mm, slope}, less_mm - 0.5, more_mm + 0.5, residual_n});
     f.shear.emplace(fingerpad::ShearMap<>{100, {1, 0.65, 10}, {1, 1.7, 1}});
     return f;
+  }
+
+  /// Frame k of `count`.
+  PressedFrame frame(int k, int count) const {
+    const Plate plate(k, count);
+    test::RoundPad<test::FilmSide> membrane;
+    membrane.contact_mm = plate.contact_mm;
+    const test::RoundFilm film({.radius_mm = plate.contact_mm,
+                                .free_per_mm = membrane.curvature_per_mm(),
+                                .top_mm = membrane.height(0)});
+    test::Image<double> depth(pad_.rows, pad_.cols, test::nan);
+    for (Index i = 0; i < pad_.rows; ++i) {
+      for (Index j = 0; j < pad_.cols; ++j) {
+        if (pad_.ray(i, j).plate_rho_mm < pad_.base_radius_mm()) {
+          depth(i, j) = test::depth_at_pixel(pad_.camera, film, i, j);
+        }
+      }
+    }
+    test::Image<Point2<double>> dots(dots_, dots_, {test::nan, test::nan});
+    for (Index i = 0; i < dots_; ++i) {
+      for (Index j = 0; j < dots_; ++j) {
+        if (printed(home(i, j))) {
+          const auto p = carried(plate, membrane.radius_mm, home(i, j));
+          dots(i, j) = pixel_of(pad_.camera, Point3<double>{p.x, p.y, film(p.x, p.y)});
+        }
+      }
+    }
+    return {plate, membrane, depth,
+            pad_.frame<std::uint8_t>(depth, 1, static_cast<std::uint64_t>(k + 1)), dots};
   }
 
  private:
@@ -135,32 +164,6 @@ class PressedFrames {
       }
     }
     return dots;
-  }
-
-  PressedFrame made(const Plate& plate, std::uint64_t seed) const {
-    test::RoundPad<test::FilmSide> membrane;
-    membrane.contact_mm = plate.contact_mm;
-    const test::RoundFilm film({.radius_mm = plate.contact_mm,
-                                .free_per_mm = membrane.curvature_per_mm(),
-                                .top_mm = membrane.height(0)});
-    test::Image<double> depth(pad_.rows, pad_.cols, test::nan);
-    for (Index i = 0; i < pad_.rows; ++i) {
-      for (Index j = 0; j < pad_.cols; ++j) {
-        if (pad_.ray(i, j).plate_rho_mm < pad_.base_radius_mm()) {
-          depth(i, j) = test::depth_at_pixel(pad_.camera, film, i, j);
-        }
-      }
-    }
-    test::Image<Point2<double>> dots(dots_, dots_, {test::nan, test::nan});
-    for (Index i = 0; i < dots_; ++i) {
-      for (Index j = 0; j < dots_; ++j) {
-        if (printed(home(i, j))) {
-          const auto p = carried(plate, membrane.radius_mm, home(i, j));
-          dots(i, j) = pixel_of(pad_.camera, Point3<double>{p.x, p.y, film(p.x, p.y)});
-        }
-      }
-    }
-    return {plate, membrane, depth, pad_.frame<std::uint8_t>(depth, 1, seed), dots};
   }
 
   test::Pad pad_;

@@ -1,0 +1,3 @@
+// SPDX-FileCopyrightText: 2026 The fingerpad authors
+// SPDX-License-Identifier: MIT
+// Owns the precompiled header of the tests.
