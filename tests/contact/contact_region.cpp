@@ -927,7 +927,7 @@ double share_on_round_edge(double ring, double patch) {
 }  // namespace
 
 TEMPLATE_TEST_CASE(
-    "share of the jump against 50 digits", "[contact_region][figures]", float, double, Digits50) {
+    "share of the jump against 50 digits", "[contact_region]", float, double, Digits50) {
   using S = TestType;
   // the constant 2 / pi has 20 digits
   const double bound = std::is_same_v<S, float> ? 3e-7 : std::is_same_v<S, double> ? 5e-16 : 1e-16;
@@ -943,14 +943,14 @@ TEMPLATE_TEST_CASE(
   CHECK(edge_share(not_a_number<S>()) == S(1));
 }
 
-TEST_CASE("the share rises with the offset", "[contact_region][figures]") {
+TEST_CASE("the share rises with the offset", "[contact_region]") {
   rc::prop("monotone", [] {
     const double a = test::uniform(0, 1.1), b = a + test::log_uniform(1e-6, 1);
     RC_ASSERT(edge_share(a) <= edge_share(b) + 1e-15);
   });
 }
 
-TEST_CASE("the share's derivative by dual numbers", "[contact_region][figures]") {
+TEST_CASE("the share's derivative by dual numbers", "[contact_region]") {
   const auto share = [](const auto& offset) { return edge_share(offset); };
   rc::prop("against differences", [&] {
     const Digits50 offset(test::uniform(0.01, 0.99));
@@ -962,7 +962,7 @@ TEST_CASE("the share's derivative by dual numbers", "[contact_region][figures]")
   CHECK(test::slope_by_dual(share, 0.0) == Approx(4 / pi.convert_to<double>()).epsilon(1e-14));
 }
 
-TEST_CASE("a round edge curves away from the ring", "[contact_region][figures]") {
+TEST_CASE("a round edge curves away from the ring", "[contact_region]") {
   for (const double ratio : {0.001, 0.01, 0.1, 0.3}) {
     const double exact = share_on_round_edge(ratio, 1);
     const double share = share_at_end(1.0, 0.0, ratio, 1.0);
@@ -970,11 +970,8 @@ TEST_CASE("a round edge curves away from the ring", "[contact_region][figures]")
   }
 }
 
-TEMPLATE_TEST_CASE("a contact ends beyond half of the jump",
-                   "[contact_region][figures]",
-                   float,
-                   double,
-                   test::Digits50) {
+TEMPLATE_TEST_CASE(
+    "a contact ends beyond half of the jump", "[contact_region]", float, double, test::Digits50) {
   using S = TestType;
   rc::prop("for every contact", [] {
     const S jump = static_cast<S>(test::log_uniform(1e-6, 0.4));

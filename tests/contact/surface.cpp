@@ -281,7 +281,7 @@ TEST_CASE("surface: too few pixels", "[surface]") {
   CHECK(fit_surface(camera, depth, mask).ok());
 }
 
-TEST_CASE("surface: noise leaves the errors that are reported", "[surface][figures]") {
+TEST_CASE("surface: noise leaves the errors that are reported", "[surface]") {
   // Over noisy frames of a sphere and of a cylinder: both curvatures.
   const auto camera = small_camera<OrthographicCamera<double>>();
   const double noise_mm = 0.05;

@@ -282,7 +282,7 @@ TEST_CASE("gel contact: other lamps are told from a large contact", "[gel_contac
   });
 }
 
-TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide][figures]") {
+TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     SlideOptions options;
@@ -296,8 +296,7 @@ TEST_CASE("gel slide: partial slip is told before gross slip", "[gel_slide][figu
   });
 }
 
-TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do",
-          "[gel_slide][figures]") {
+TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 1.05 * gel.pull_mm()), {});
@@ -312,7 +311,7 @@ TEST_CASE("gel slide: the imprint goes as far as the ball, whatever the dots do"
 }
 
 TEST_CASE("gel slide: a slide is as long as the ball's way past the gel of its dent",
-          "[gel_slide][figures]") {
+          "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 2.5 * gel.pull_mm()), {});
@@ -326,7 +325,7 @@ TEST_CASE("gel slide: a slide is as long as the ball's way past the gel of its d
   });
 }
 
-TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide][figures]") {
+TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     std::vector<Step> steps;
@@ -339,8 +338,7 @@ TEST_CASE("gel slide: loading and unloading in place is no slip", "[gel_slide][f
   });
 }
 
-TEST_CASE("gel slide: a mask that is true everywhere gives no false warning",
-          "[gel_slide][figures]") {
+TEST_CASE("gel slide: a mask that is true everywhere gives no false warning", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const Seen seen = watch(gel, dragged(gel, 0.8 * gel.pull_mm()), {}, true);
@@ -349,7 +347,7 @@ TEST_CASE("gel slide: a mask that is true everywhere gives no false warning",
   });
 }
 
-TEST_CASE("gel slide: what is held does not wander", "[gel_slide][figures]") {
+TEST_CASE("gel slide: what is held does not wander", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     const auto at = 0.3 * gel.pull_mm() * any_direction();
@@ -362,8 +360,7 @@ TEST_CASE("gel slide: what is held does not wander", "[gel_slide][figures]") {
   });
 }
 
-TEST_CASE("gel slide: a gel that springs back is told, one that is pulled is not",
-          "[gel_slide][figures]") {
+TEST_CASE("gel slide: a gel that springs back is told, one that is pulled is not", "[gel_slide]") {
   rc::prop("for every gel", [] {
     const AnyGel gel;
     auto steps = dragged(gel, 0.9 * gel.pull_mm());

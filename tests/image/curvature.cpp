@@ -685,10 +685,7 @@ double map_error(const CameraType& camera) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a section's curvature follows 50 digits",
-                   "[curvature][figures]",
-                   float,
-                   double) {
+TEMPLATE_TEST_CASE("a section's curvature follows 50 digits", "[curvature]", float, double) {
   using S = TestType;
   rc::prop("whatever depth, slope and curvature", [] {
     const S radius = static_cast<S>(test::whole(0, 1) == 0 ? 0.768 : 1.92);
@@ -718,7 +715,7 @@ TEMPLATE_TEST_CASE("maps of curvature follow 50 digits", "[curvature][figures]",
 }
 
 TEMPLATE_TEST_CASE("through a camera too, up to the rounding of zeta",
-                   "[curvature][figures]",
+                   "[curvature]",
                    float,
                    double) {
   using S = TestType;
@@ -730,7 +727,7 @@ TEMPLATE_TEST_CASE("through a camera too, up to the rounding of zeta",
   });
 }
 
-TEST_CASE("fifty digits and dual numbers have curvature", "[curvature][figures]") {
+TEST_CASE("fifty digits and dual numbers have curvature", "[curvature]") {
   using S = Digits50;
   const S radius(0.768), before(9), center(9.5), after(9.25);
   const S tiny("1e-16");
@@ -746,8 +743,7 @@ TEST_CASE("fifty digits and dual numbers have curvature", "[curvature][figures]"
   CHECK(test::relative_error(published, menger) < S("1e-47"));
 }
 
-TEST_CASE("the published circle loses digits where the membrane is nearly flat",
-          "[curvature][figures]") {
+TEST_CASE("the published circle loses digits where the membrane is nearly flat", "[curvature]") {
   double published = 0, menger = 0;
   int lost = 0;
   test::Random random(7);

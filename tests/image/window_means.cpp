@@ -66,7 +66,7 @@ Means<Mean> means_of(const Frame<Pixel>& frame,
 
 }  // namespace
 
-TEST_CASE("the largest window of the brightest 8-bit pixels", "[window][figures]") {
+TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
   const Frame<std::uint8_t> frame(260, 300, 255);
   const Image<std::uint8_t> all(260, 300, 1);
   const auto means = means_of(frame, all, 253, {0, 256});
@@ -75,7 +75,7 @@ TEST_CASE("the largest window of the brightest 8-bit pixels", "[window][figures]
   CHECK(means.red(0, 0) == 255.0f);
 }
 
-TEST_CASE("the largest window of the largest 16-bit numbers", "[window][figures]") {
+TEST_CASE("the largest window of the largest 16-bit numbers", "[window]") {
   const int level = GENERATE(-32768, 32768);
   Frame<std::int32_t> frame(256, 270, level);
   frame.green = Image<std::int32_t>(256, 270, 65535);
@@ -87,7 +87,7 @@ TEST_CASE("the largest window of the largest 16-bit numbers", "[window][figures]
   CHECK(means.green(127, 140) == Approx(65535).epsilon(2e-7));
 }
 
-TEST_CASE("whole numbers have exact sums, rounded as a box filter does", "[window][figures]") {
+TEST_CASE("whole numbers have exact sums, rounded as a box filter does", "[window]") {
   rc::prop("in any frame", [] {
     using Pixel = std::int32_t;
     const Index rows = test::whole(1, 30);
@@ -138,7 +138,7 @@ TEST_CASE("whole numbers have exact sums, rounded as a box filter does", "[windo
 }
 
 TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
-                   "[window][figures]",
+                   "[window]",
                    float,
                    double) {
   // A bright band followed by 400 rows of 1e-3 of it: a remainder of the band would be visible.
@@ -169,7 +169,7 @@ TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
   CHECK(worst <= 2 * static_cast<double>(epsilon<S>()));  // the sum, the reciprocal, the product
 }
 
-TEST_CASE("windows and images that cannot be are refused", "[window][figures]") {
+TEST_CASE("windows and images that cannot be are refused", "[window]") {
   using Sums = detail::WindowMeans<std::uint32_t>;
   CHECK_NOTHROW(Sums(1, 1, {3, 255}));
   CHECK_THROWS_AS(Sums(0, 1, {3, 5}), parameter_error);
@@ -181,7 +181,7 @@ TEST_CASE("windows and images that cannot be are refused", "[window][figures]") 
   CHECK_THROWS_AS(Sums(9, 9, {3, 257}), parameter_error);
 }
 
-TEST_CASE("interleaved rows come apart", "[window][figures]") {
+TEST_CASE("interleaved rows come apart", "[window]") {
   rc::prop("for two to five channels and any length", [] {
     const auto check = [](auto channels, auto pixel) {
       using Pixel = decltype(pixel);
@@ -212,7 +212,7 @@ TEST_CASE("interleaved rows come apart", "[window][figures]") {
   });
 }
 
-TEST_CASE("pixels strictly between two limits, at the ends of their range", "[window][figures]") {
+TEST_CASE("pixels strictly between two limits, at the ends of their range", "[window]") {
   // A row with one pixel of each level, without smoothing: the first and the last that counts.
   const auto range_of = [](auto pixel, double units, double dark, double saturated) {
     using Pixel = decltype(pixel);

@@ -754,10 +754,7 @@ std::array<double, 2> errors(double away, bool in_float) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("contact shift: follows 50 digits",
-                   "[contact_shift][figures]",
-                   PlainMean,
-                   HuberMean) {
+TEMPLATE_TEST_CASE("contact shift: follows 50 digits", "[contact_shift]", PlainMean, HuberMean) {
   // The weights of a robust mean follow residuals of 0.01, of which roundoff is a larger share.
   constexpr bool robust = TestType::is_robust;
   SECTION("in double, about the origin, in a corner of an image, and far away") {

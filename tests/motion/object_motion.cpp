@@ -81,7 +81,7 @@ TEST_CASE("object motion: dots that come into contact again sit elsewhere on the
   CHECK(error_deg(result.pose.rotation, roll.pose.rotation) < 1e-10);
 }
 
-TEST_CASE("object motion: noise after a roll of 30 mm", "[noise][figures]") {
+TEST_CASE("object motion: noise after a roll of 30 mm", "[noise]") {
   // over dots 1.5 mm apart, with 0.02 mm of noise in the plane and 0.05 mm in depth
   const auto rms_deg = [](double patch_mm, int frames) {
     const test::RollingBall ball{.rows = 11, .cols = 31, .patch_mm = patch_mm};

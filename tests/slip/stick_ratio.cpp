@@ -1105,8 +1105,7 @@ TEST_CASE("stick ratio: with the measured noise few dots are taken for slipping"
   CHECK(slipping(0.005) > 0.1);
 }
 
-TEST_CASE("stick ratio: its standard deviation is smaller with more dots, and grows while kept",
-          "[figures]") {
+TEST_CASE("stick ratio: its standard deviation is smaller with more dots, and grows while kept") {
   for (const double pitch_mm : {1.5, 2.5}) {
     SlippingPatch patch(pitch_mm, 9.05);
     StickRatio<> stick(patch.dots.rows(), patch.dots.cols(), {.noise = 0.005});
