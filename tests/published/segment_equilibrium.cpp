@@ -224,6 +224,39 @@ TEST_CASE("the printed iteration is linear in the pressure", "[published]") {
   CHECK(norm(twice.moment_n_mm - 2.0 * once.moment_n_mm) < 1e-9 * norm(once.moment_n_mm));
 }
 
+TEST_CASE("the printed iteration knows no unit of length", "[published]") {
+  struct Doubled {
+    MembranePoint<double> operator()(double x, double y) const {
+      const auto p = TiltedTop()(x / 2, y / 2);
+      return {2 * p.height_mm, p.along_x, p.along_y};
+    }
+    bool in_contact(double x, double y) const { return TiltedTop().in_contact(x / 2, y / 2); }
+  };
+  const RoundPad<ArcSide> pad;
+  const auto rim = rim_of(pad);
+  const auto doubled = [](auto points) {
+    for (auto& p : points.cells) {
+      p = 2.0 * p;
+    }
+    return points;
+  };
+  const auto dots = rim.dots([&](double at) { return RimLoad{0.1 + 0.01 * std::cos(at), 0.01}; });
+  const Options small = {.contours = 20, .passes = 2};
+  const Options large = {.base_radius_mm = 2 * small.base_radius_mm,
+                         .delta_z_mm = 2 * small.delta_z_mm,
+                         .contours = 20,
+                         .passes = 2,
+                         .step_mm = 2 * small.step_mm,
+                         .inside_mm = 2 * small.inside_mm};
+  SegmentEquilibrium<> one(rim.borders(), small), two(doubled(rim.borders()), large);
+  const auto a = one(TiltedTop(), dots, pressed_mpa),
+             b = two(Doubled(), doubled(dots), pressed_mpa);
+  REQUIRE(a.ok());
+  REQUIRE(b.ok());
+  CHECK(norm(b.force_n - 4.0 * a.force_n) < 1e-9 * norm(b.force_n));
+  CHECK(norm(b.moment_n_mm - 8.0 * a.moment_n_mm) < 1e-9 * norm(b.moment_n_mm));
+}
+
 TEST_CASE("the printed iteration, word for word, on finite-element membranes", "[published]") {
   SegmentEquilibrium<> wrench(test::rim_border());
   double along = 0, along_sq = 0, turn = 0, turn_sq = 0;
