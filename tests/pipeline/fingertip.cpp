@@ -584,8 +584,7 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
                                           [](const auto& one) { return one.name == "bowl"; });
   const auto &free = s.frames.front(), &pressed = s.frames[1];
   FingertipOptions options = frames().options();
-  constexpr std::size_t every = 3;  // dots enough; the sd, by which the press grows, grows alike
-  const std::vector<fingerpad::Point3<double>> cells(free.dots_mm.size() / every);
+  const std::vector<fingerpad::Point3<double>> cells(free.dots_mm.size());
   const auto rows = static_cast<fingerpad::Index>(cells.size());
   options.free_dots_mm = {cells.data(), rows, 1, 1};
   options.wrench = test::SeenRim::options_of(s, true);
@@ -602,8 +601,7 @@ TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]")
       const double mpa = free.pressure_mpa + share * (pressed.pressure_mpa - free.pressure_mpa);
       std::vector<Point2<double>> px;
       for (std::size_t k = 0; k < cells.size(); ++k) {
-        const auto& home = free.dots_mm[every * k];
-        const auto at = home + share * (pressed.dots_mm[every * k] - home);
+        const auto at = free.dots_mm[k] + share * (pressed.dots_mm[k] - free.dots_mm[k]);
         const auto seen = pixel_of(s.camera(), at);
         px.push_back({seen.x + 0.06 * random.normal(), seen.y + 0.06 * random.normal()});
       }
