@@ -21,11 +21,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/dot_frame.hpp"
 #include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
@@ -107,26 +107,23 @@ class GelSlide {
  public:
   /// For imprints of rows x cols cells, and the dots of the free pad in px (NaN: not found).
   /// Refuses bad parameters, and dots closer than a cell or farther apart than the imprint is long
-  /// (parameter_error). O(dots^2) time.
+  /// (parameter_error).
   template <dot_grid Dots>
   GelSlide(Index rows, Index cols, const Dots& free_px, const SlideOptions& options = {})
       : options_(options), rows_(rows), cols_(cols) {
     const auto free = as_view(free_px);
-    dot_rows_ = free.rows();
-    dot_cols_ = free.cols();
     expects_grid_size("GelSlide: imprint", rows, cols, 3);
-    expects_grid_size("GelSlide: dots", dot_rows_, dot_cols_);
+    expects_grid_size("GelSlide: dots", free.rows(), free.cols());
     require(options);
     touching_.resize(static_cast<std::size_t>(rows * cols));
-    const auto dots = static_cast<std::size_t>(dot_rows_ * dot_cols_);
-    dots_.resize(dots);
-    key_dots_.resize(dots);
-    x_.reserve(dots);
-    y_.reserve(dots);
+    dots_ = {free.rows(), free.cols()};
+    key_dots_ = dots_.found;
+    x_.reserve(2 * dots_.found.size());
+    y_.reserve(dots_.found.size());
     cells_.reserve(static_cast<std::size_t>((std::min)(rows * cols, 2 * max_cells)));
-    read(free);
-    free_ = dots_;
-    pitch_px_ = pitch_of(free_);
+    dots_.read(free, true);
+    free_ = dots_.found;
+    pitch_px_ = pitch();
     const double side_px = options.cell_px * static_cast<double>((std::max)(rows, cols));
     expects(pitch_px_ >= options.cell_px && pitch_px_ <= side_px, "GelSlide", "free_px: pitch",
             pitch_px_, "at least a cell and at most the imprint: check the unit of the dots");
@@ -140,10 +137,10 @@ class GelSlide {
     const auto touch = as_view(contact);
     const auto dots = as_view(dots_px);
     if (now.rows() != rows_ || now.cols() != cols_ || !same_size(now, touch) ||
-        dots.rows() != dot_rows_ || dots.cols() != dot_cols_) {
+        dots.rows() != dots_.rows || dots.cols() != dots_.cols) {
       return {};
     }
-    read(dots);
+    dots_.read(dots, true);
     find_recoil();
     const Index area = read_contact(touch);
     result_.dots = 0;
@@ -181,8 +178,6 @@ class GelSlide {
                                                 // an sd of 1.5 cells
   static constexpr double least_noise = 0.01;   // relative to the spread of the imprint
 
-  static constexpr Point2<double> missing = {not_a_number<double>(), not_a_number<double>()};
-
   struct Cell {  // of the key frame
     Point2<double> at;
     Point2<double> slope;
@@ -194,19 +189,6 @@ class GelSlide {
     double correlation = 0;
   };
 
-  template <class Dots>
-  void read(const Dots& dots) {
-    for (Index i = 0; i < dot_rows_; ++i) {
-      for (Index j = 0; j < dot_cols_; ++j) {
-        const cell_t<Dots> p = dots(i, j);
-        using Traits = point_traits<cell_t<Dots>>;
-        const Point2<double> dot = {static_cast<double>(value(Traits::x(p))),
-                                    static_cast<double>(value(Traits::y(p)))};
-        dots_[static_cast<std::size_t>(i * dot_cols_ + j)] = is_plausible(dot) ? dot : missing;
-      }
-    }
-  }
-
   /// The value that the share `at` of `values` is below; NaN without values.
   static double quantile(std::vector<double>& values, double at) {
     const auto nth =
@@ -215,33 +197,31 @@ class GelSlide {
     return values.empty() ? not_a_number<double>() : *nth;
   }
 
-  /// Median distance of a dot from the one nearest to it; NaN with fewer than two dots.
-  static double pitch_of(const std::vector<Point2<double>>& dots) {
-    std::vector<double> distances;
-    for (const auto& dot : dots) {
-      double nearest = (std::numeric_limits<double>::infinity)();
-      for (const auto& other : dots) {
-        const double distance = norm(other - dot);
-        nearest = &other != &dot && distance < nearest ? distance : nearest;
-      }
-      if (is_finite(nearest)) {
-        distances.push_back(nearest);
+  /// Median distance of neighbours; NaN if there are none.
+  double pitch() {
+    x_.clear();
+    for (Index k = 0; k + dots_.width < detail::size_of(free_); ++k) {
+      for (const Index beside : {Index(1), dots_.width}) {
+        const double distance = norm(free_[k + beside] - free_[k]);
+        if (is_finite(distance)) {
+          x_.push_back(distance);
+        }
       }
     }
-    return quantile(distances, 0.5);
+    return quantile(x_, 0.5);
   }
 
   /// Finds the recoil. Discards all dots if most are too far from where they belong.
   void find_recoil() {
     x_.clear();
-    for (std::size_t k = 0; k < dots_.size(); ++k) {
-      const double displaced = norm(dots_[k] - free_[k]) / pitch_px_;
+    for (Index k = 0; k < detail::size_of(free_); ++k) {
+      const double displaced = norm(dots_.found[k] - free_[k]) / pitch_px_;
       if (is_finite(displaced)) {
         x_.push_back(displaced);
       }
     }
     if (quantile(x_, 0.5) > max_displacement) {
-      std::fill(dots_.begin(), dots_.end(), missing);
+      std::fill(dots_.found.begin(), dots_.found.end(), detail::missing_point<double>());
       x_.clear();
     }
     result_.recoil = not_a_number<double>();
@@ -266,7 +246,7 @@ class GelSlide {
   bool touches(Index i, Index j) const {
     return touching_[static_cast<std::size_t>(i * cols_ + j)] > 0;
   }
-  bool touches(const Point2<double>& dot) const {
+  bool touches(const Point3<double>& dot) const {
     const double i = std::floor((dot.y + 0.5) / options_.cell_px);
     const double j = std::floor((dot.x + 0.5) / options_.cell_px);
     return i >= 0 && j >= 0 && i < static_cast<double>(rows_) && j < static_cast<double>(cols_) &&
@@ -291,8 +271,9 @@ class GelSlide {
         }
       }
     }
-    for (std::size_t k = 0; k < dots_.size(); ++k) {
-      key_dots_[k] = touches(dots_[k]) ? dots_[k] : missing;
+    for (Index k = 0; k < detail::size_of(key_dots_); ++k) {
+      const Point3<double>& dot = dots_.found[k];
+      key_dots_[k] = touches(dot) ? dot : detail::missing_point<double>();
     }
     last_shift_ = {0, 0};
     key_ = result_;
@@ -329,10 +310,10 @@ class GelSlide {
   Point2<double> motion_of_dots() {
     x_.clear();
     y_.clear();
-    for (std::size_t k = 0; k < dots_.size(); ++k) {
-      if (is_finite(key_dots_[k]) && touches(dots_[k])) {
-        x_.push_back(dots_[k].x - key_dots_[k].x);
-        y_.push_back(dots_[k].y - key_dots_[k].y);
+    for (Index k = 0; k < detail::size_of(key_dots_); ++k) {
+      if (is_finite(key_dots_[k]) && touches(dots_.found[k])) {
+        x_.push_back(dots_.found[k].x - key_dots_[k].x);
+        y_.push_back(dots_.found[k].y - key_dots_[k].y);
       }
     }
     result_.dots = static_cast<Index>(x_.size());
@@ -402,10 +383,11 @@ class GelSlide {
   }
 
   SlideOptions options_;
-  Index rows_, cols_, dot_rows_ = 0, dot_cols_ = 0;
+  Index rows_, cols_;
   double pitch_px_ = 0;
   std::vector<std::uint8_t> touching_;  // 1 for cells in contact
-  std::vector<Point2<double>> free_, dots_, key_dots_;
+  detail::FrameOfDots<double> dots_{0, 0};
+  detail::Bordered<Point3<double>> free_, key_dots_;  // px; z is 0
   detail::ReservedVector<Cell> cells_;
   detail::ReservedVector<double> x_, y_;
   double cells_per_sample_ = 1;

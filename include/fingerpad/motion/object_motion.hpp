@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/dot_frame.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/rigid_fit.hpp"
@@ -85,14 +86,13 @@ template <scalar S = double>
 class ObjectMotion {
  public:
   /// For a grid of rows x cols dots. Refuses bad parameters (parameter_error).
-  ObjectMotion(Index rows, Index cols) : rows_(rows), cols_(cols) {
-    expects_grid_size("ObjectMotion", rows, cols, 0);
-    map_.resize(static_cast<std::size_t>(rows * cols));
-    seen_.resize(map_.size());
-  }
+  ObjectMotion(Index rows, Index cols)
+      : frame_{(expects_grid_size("ObjectMotion", rows, cols, 0), rows), cols},
+        map_(frame_.found.size()),
+        seen_(map_.size()) {}
 
-  Index rows() const { return rows_; }
-  Index cols() const { return cols_; }
+  Index rows() const { return frame_.rows; }
+  Index cols() const { return frame_.cols; }
 
   /// Processes a frame with the dots `dots_mm` (NaN, or not beyond the plate, z <= 0: not found),
   /// of which those with a true `contact` touch the object and those with a true `slips` do not
@@ -114,11 +114,12 @@ class ObjectMotion {
     last_.dots_used = 0;
     last_.position_sd_mm = last_.rotation_sd_rad = not_a_number<S>();
     last_.status = MotionStatus::no_pose;
-    if (dots.rows() != rows_ || dots.cols() != cols_ || !same_size(dots, flags) ||
+    if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
         !same_size(dots, slipping)) {
       return last_;
     }
-    read(dots, flags, slipping);
+    frame_.read(dots);
+    read(flags, slipping);
     last_.status = look(depth_noise_mm);
     estimate_errors(depth_noise_mm);
     return last_;
@@ -127,7 +128,7 @@ class ObjectMotion {
   /// The same if no dot slips.
   template <spatial_dot_grid Dots, contact_mask Contact>
   ObjectMotionResult<S> operator()(const Dots& dots_mm, const Contact& contact) {
-    return (*this)(dots_mm, contact, LazyView(rows_, cols_, [](Index, Index) { return false; }));
+    return (*this)(dots_mm, contact, LazyView(rows(), cols(), [](Index, Index) { return false; }));
   }
 
  private:
@@ -136,36 +137,29 @@ class ObjectMotion {
     S weight = S(0);    ///< of the mean; 0: not on the map
     bool left = false;  ///< found in this frame, but it does not stick
   };
-  struct Seen {
-    std::size_t cell = 0;  ///< index of its entry
-    Point3<S> dot_mm = {S(0), S(0), S(0)};
-  };
-
   /// Lists the dots that stick, and marks those that are found but do not; missing ones may still
   /// be in contact.
-  template <class Dots, class Contact, class Slips>
-  void read(const Dots& dots, const Contact& contact, const Slips& slips) {
+  template <class Contact, class Slips>
+  void read(const Contact& contact, const Slips& slips) {
     known_ = fresh_ = flagged_ = found_ = touching_ = 0;
-    std::size_t cell = 0;
-    for (Index i = 0; i < rows_; ++i) {
-      for (Index j = 0; j < cols_; ++j, ++cell) {
-        const Point3<S> p = detail::spatial_dot<S>(cell_t<Dots>(dots(i, j)));
-        const bool found = S(0) < p.z;
+    for (Index i = 0; i < rows(); ++i) {
+      for (Index j = 0, k = frame_.cell(i, 0); j < cols(); ++j, ++k) {
+        const bool found = S(0) < frame_.found[k].z;
         const bool flagged = is_contact(cell_t<Contact>(contact(i, j)));
         const bool sticks = found && flagged && !is_contact(cell_t<Slips>(slips(i, j)));
         found_ += found ? 1 : 0;
         flagged_ += flagged ? 1 : 0;
         touching_ += found && flagged ? 1 : 0;
-        map_[cell].left = found && !sticks;
+        map_[k].left = found && !sticks;
         if (sticks) {
-          const bool known = S(0) < map_[cell].weight;
-          seen_[known ? known_++ : map_.size() - ++fresh_] = {cell, p};
+          const bool known = S(0) < map_[k].weight;
+          seen_[known ? known_++ : seen_.size() - ++fresh_] = k;
         }
       }
     }
   }
-  std::span<const Seen> known() const { return std::span(seen_).first(known_); }
-  std::span<const Seen> fresh() const { return std::span(seen_).last(fresh_); }
+  std::span<const Index> known() const { return std::span(seen_).first(known_); }
+  std::span<const Index> fresh() const { return std::span(seen_).last(fresh_); }
 
   MotionStatus look(double depth_noise_mm) {
     if (flagged_ == 0) {
@@ -200,11 +194,11 @@ class ObjectMotion {
     Point3<S> middle = {S(0), S(0), S(0)};
     S spread_sq = S(0);
     const S count = S(static_cast<double>(used.size()));
-    for (const Seen& s : used) {
-      middle += s.dot_mm / count;
+    for (const Index k : used) {
+      middle += frame_.found[k] / count;
     }
-    for (const Seen& s : used) {
-      spread_sq = spread_sq + squared_norm(s.dot_mm - middle);
+    for (const Index k : used) {
+      spread_sq = spread_sq + squared_norm(frame_.found[k] - middle);
     }
     constexpr double common = 4;  // dots with one error
     const S tilt = S(4 * common) / spread_sq;
@@ -222,35 +216,27 @@ class ObjectMotion {
   }
 
   template <class From, class Weight>
-  std::optional<Pose<S>> fit(std::span<const Seen> dots,
+  std::optional<Pose<S>> fit(std::span<const Index> dots,
                              const From& from,
                              const Weight& weight) const {
-    const auto seen = [&](Index k) -> const Seen& { return dots[static_cast<std::size_t>(k)]; };
+    const auto cell = [&](Index n) { return dots[static_cast<std::size_t>(n)]; };
     return fit_rigid<S>(
-        static_cast<Index>(dots.size()), [&](Index k) { return from(seen(k)); },
-        [&](Index k) { return seen(k).dot_mm; }, [&](Index k) { return weight(seen(k)); });
+        static_cast<Index>(dots.size()), [&](Index n) { return from(cell(n)); },
+        [&](Index n) { return frame_.found[cell(n)]; }, [&](Index n) { return weight(cell(n)); });
   }
 
   bool begin() {
-    const auto itself = [](const Seen& s) { return s.dot_mm; };
-    if (fresh_ < 9 || !fit(fresh(), itself, [](const Seen&) { return S(1); })) {
+    const auto itself = [this](Index k) { return frame_.found[k]; };
+    if (fresh_ < 9 || !fit(fresh(), itself, [](Index) { return S(1); })) {
       return false;
     }
     Point3<S> sum = {S(0), S(0), S(0)};
-    pitch_sq_ = S(0);
-    double pairs = 0;
-    const Seen* next = nullptr;  // they are listed from the last to the first
-    for (const Seen& s : fresh()) {
-      sum += s.dot_mm;
-      if (next != nullptr && next->cell == s.cell + 1 &&
-          next->cell % static_cast<std::size_t>(cols_) != 0) {
-        pitch_sq_ = pitch_sq_ + squared_norm(next->dot_mm - s.dot_mm);
-        pairs += 1;
-      }
-      next = &s;
+    for (const Index k : fresh()) {
+      sum += frame_.found[k];
     }
-    pitch_sq_ = pairs > 0 ? pitch_sq_ / S(pairs) : S(square(50.0));
-    if (pairs > 0 && !(S(square(0.05)) < pitch_sq_ && pitch_sq_ < S(square(50.0)))) {
+    pitch_sq_ = detail::mean_pitch_sq(fresh(), frame_.found.data(), frame_.width);
+    pitch_sq_ = S(0) < pitch_sq_ ? pitch_sq_ : S(square(49.0));  // no neighbours
+    if (!(S(square(0.05)) < pitch_sq_ && pitch_sq_ < S(square(50.0)))) {
       return false;  // dots in m or um
     }
     start_mm_ = sum / S(static_cast<double>(fresh_));
@@ -268,16 +254,16 @@ class ObjectMotion {
   bool advance() {
     using std::sqrt;
     const std::optional<Pose<S>> found = fit(
-        known(), [this](const Seen& s) { return map_[s.cell].place_mm; },
-        [this](const Seen& s) {  // by the noise of the entry and of the dot
-          return map_[s.cell].weight / (map_[s.cell].weight + S(1));
+        known(), [this](Index k) { return map_[k].place_mm; },
+        [this](Index k) {  // by the noise of the entry and of the dot
+          return map_[k].weight / (map_[k].weight + S(1));
         });
     if (known_ < 3 || !found) {
       return false;
     }
     S sum_sq = S(0);
-    for (const Seen& s : known()) {
-      sum_sq = sum_sq + squared_norm(s.dot_mm - (*found)(map_[s.cell].place_mm));
+    for (const Index k : known()) {
+      sum_sq = sum_sq + squared_norm(frame_.found[k] - (*found)(map_[k].place_mm));
     }
     const S mean_sq = sum_sq / S(static_cast<double>(known_));
     // no membrane turns by 2.5 rad between two poses: exchanged rows and columns turn a patch over
@@ -295,10 +281,10 @@ class ObjectMotion {
       entry.weight = entry.left ? S(0) : entry.weight;
     }
     const Pose<S> back = inverse(*found);
-    for (const Seen& s : known()) {
-      Entry& entry = map_[s.cell];
+    for (const Index k : known()) {
+      Entry& entry = map_[k];
       entry.weight = entry.weight + S(1);
-      entry.place_mm += (back(s.dot_mm) - entry.place_mm) / entry.weight;
+      entry.place_mm += (back(frame_.found[k]) - entry.place_mm) / entry.weight;
     }
     enter();
     return true;
@@ -307,14 +293,14 @@ class ObjectMotion {
   /// A new entry has the error of the pose besides that of its dot: it counts as half a dot.
   void enter() {
     const Pose<S> back = inverse(last_.pose);
-    for (const Seen& s : fresh()) {
-      map_[s.cell] = {back(s.dot_mm), S(1) / S(2)};
+    for (const Index k : fresh()) {
+      map_[k] = {back(frame_.found[k]), S(1) / S(2)};
     }
   }
 
-  Index rows_, cols_;
-  std::vector<Entry> map_;
-  std::vector<Seen> seen_;  ///< dots that stick: known ones first, new ones from the back
+  detail::FrameOfDots<S> frame_;
+  detail::Bordered<Entry> map_;  ///< by the cells of the frame
+  std::vector<Index> seen_;      ///< dots that stick: known ones first, new ones from the back
   std::size_t known_ = 0, fresh_ = 0;  ///< how many
   std::size_t flagged_ = 0, found_ = 0, touching_ = 0;
   bool has_object_ = false;
