@@ -166,7 +166,8 @@ struct [[nodiscard]] SlipResult {
   /// The dots move back toward their free positions: the load falls, or the object slides because
   /// friction has fallen.
   bool falls_back = false;
-  /// The dots' ratio is of this frame, and not above a fifth by its standard deviation.
+  /// The dots' ratio is of this frame, and not above a fifth by what the number of dots leaves
+  /// open.
   bool in_doubt = false;
   S normal_n = not_a_number<S>();  ///< F_n; NaN where L is unknown
   S friction = not_a_number<S>();  ///< L
@@ -253,7 +254,8 @@ class FrictionLimit {
   /// membrane springs back while the load stays: the last ratio applies, and a first slide is
   /// learnt if less than half stuck in it. The standard deviation grows where the dots slip more
   /// than a friction of 0.5, or the limit, lets them under this load: a soft object moves its dots
-  /// as in partial slip.
+  /// as in partial slip. It also grows where it is not known which answer holds, by a ratio
+  /// anywhere from 0 up, and after a slide, which may have gone on since the reference.
   template <class Stick>
     requires requires(const Stick& seen) {
       seen.stick_ratio;
@@ -264,6 +266,7 @@ class FrictionLimit {
     RatioUpdate update = update_of(seen.status);
     S ratio = S(seen.stick_ratio), sd = S(seen.ratio_sd);
     Index age = seen.reference_age;
+    S slid_share = S(0);
     bool falls_back = false, carried = false;
     if constexpr (requires { seen.back_age; }) {
       falls_back = is_finite(seen.back_ratio);
@@ -275,6 +278,9 @@ class FrictionLimit {
             S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
         ratio = carried ? S(seen.back_ratio) : slides ? S(0) : ratio;
         sd = carried ? S(seen.back_sd) : sd;
+        slid_share = !carried                                       ? S(slides ? 0.0 : 1.0 / 3)
+                     : S(options_.slide_fraction) * limit_ < before ? S(1) - now / before
+                                                                    : S(0);
         update = carried || slides ? RatioUpdate::fresh : update;
       }
     }
@@ -283,12 +289,14 @@ class FrictionLimit {
     if (slid) {
       result.ratio_sd = falls_back ? zero_sd(S(seen.back_ratio), result.friction) : result.ratio_sd;
     } else {
-      result.ratio_sd = held_sd(result, sd);
+      using std::sqrt;
+      result.ratio_sd = held_sd(result, sqrt(sd * sd + slid_share * ratio * ratio));
     }
     result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
     result.falls_back = falls_back;
-    result.in_doubt = !falls_back && update == RatioUpdate::fresh && !(S(least_stick) < ratio - sd);
+    result.in_doubt = !falls_back && update == RatioUpdate::fresh &&
+                      !(S(least_stick) < ratio - S(seen.least_sd()));
     return result;
   }
 

@@ -112,8 +112,10 @@ struct [[nodiscard]] StickResult {
   S back_ratio = not_a_number<S>(), back_sd = not_a_number<S>();
   Index back_age = 0;
   S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
-  /// Its standard deviation as found on simulated contacts, sqrt(0.065^2 + 0.9^2 / n) with n dots
-  /// in contact, and 0.05 more with each frame for which the ratio has been kept, up to 0.5.
+  /// Its standard deviation: sqrt(0.065^2 + 0.9^2 / n + q^2 + c^2 / 3) with n dots in contact, the
+  /// share q of dots that slip by one to two times what counts as slip, as on a soft object or with
+  /// noise, and the change c since the last answer, which may be any part of a larger one when the
+  /// steps between frames are large. A kept ratio has 0.05 more with each frame, up to 0.5.
   S ratio_sd = not_a_number<S>();
   S furthest = S(0);        ///< d_max, the largest displacement from the reference
   Index reference_age = 0;  ///< frames from the reference to the answer
@@ -127,6 +129,11 @@ struct [[nodiscard]] StickResult {
   bool ok() const { return accepted() && is_finite(stick_ratio); }
   bool updated() const { return status == StickStatus::updated; }
   Index dots_in_contact() const { return stick + slip + unknown; }
+  /// What the number of dots alone leaves of ratio_sd.
+  S least_sd() const {
+    using std::sqrt;
+    return sqrt(S(square(0.065)) + S(square(0.9)) / detail::number<S>(dots_in_contact()));
+  }
 };
 
 /// Stick ratio of a pad, frame by frame. The object is the state: copy it to return to a frame
@@ -192,8 +199,12 @@ class StickRatio {
     result_.back_ratio = result_.back_sd = not_a_number<S>();
     result_.status = touching_ > 0 ? with_contact(time_s) : without_contact(time_s);
     count_states();
-    const S sd = sqrt_of(S(square(0.065)) + S(square(0.9)) / detail::number<S>(touching_));
-    result_.ratio_sd = result_.updated() ? sd : (std::min)(result_.ratio_sd + S(0.05), S(0.5));
+    const S sd = sqrt_of(square(result_.least_sd()) + doubt_sq_);
+    if (result_.updated()) {
+      result_.ratio_sd = sd;
+    } else if (result_.ratio_sd < S(0.5)) {
+      result_.ratio_sd = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
+    }
     result_.back_sd = is_finite(result_.back_ratio) ? sd : not_a_number<S>();
     const bool slips = 10 * result_.slip > result_.stick + result_.slip;
     if (result_.updated() && slips && !has_outline_ && !options_.covers_pattern) {
@@ -395,7 +406,13 @@ class StickRatio {
     }
     const Index stick =
         std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.sticks(); });
-    const S ratio = detail::number<S>(stick) / detail::number<S>(detail::size_of(pairs_));
+    const Index near = std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& p) {
+      return value(squared_norm(p.mean)) < 4 * value(p.limit_sq);
+    });
+    const S known = detail::number<S>(detail::size_of(pairs_));
+    const S ratio = detail::number<S>(stick) / known;
+    const S change = is_finite(result_.stick_ratio) ? ratio - result_.stick_ratio : S(0);
+    doubt_sq_ = square(detail::number<S>(near - stick) / known) + change * change / S(3);
     if (falls_back()) {
       result_.back_ratio = ratio;
       result_.back_age = age;
@@ -670,6 +687,7 @@ class StickRatio {
   P center_ = detail::missing_point<S>();  // of the dots that stuck in the last answer
   S pitch_sq_ = S(0), sd_ = S(0);
   S furthest_sq_ = S(0), limit_sq_ = S(0);  // d_max and the limit of this frame
+  S doubt_sq_ = S(0);                       // variance of the last ratio beyond that of its dots
   Pose<S> motion_ = {};                     // of the object since the reference
   S scale_ = S(1);
   double latest_s_ = never, contact_s_ = never;
