@@ -124,9 +124,8 @@ double depth_sd_mm(const Plan& plan, double depth_mm) {
   reference.depth_mm.assign(size, static_cast<float>(depth_mm));
   reference.scattering.assign(size, static_cast<float>(g));
   reference.pixels_used = static_cast<fingerpad::Index>(size);
-  const auto pencil =
-      pencil_of(camera, ray_at_pixel(camera, camera.center_y_px, camera.center_x_px));
-  const auto colour = colour_at_depth(fluid, pencil, plan.brightness, g, depth_mm);
+  const auto ray = ray_at_pixel(camera, camera.center_y_px, camera.center_x_px);
+  const auto colour = colour_at_depth(fluid, ray, plan.brightness, g, depth_mm);
   fingerpad::DepthEstimator<float> estimate(camera, fluid, reference,
                                             {.window_px = plan.window_px});
   std::vector<std::uint8_t> red(size), green(size);
