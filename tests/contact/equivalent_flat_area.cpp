@@ -151,10 +151,8 @@ TEST_CASE("equivalent flat area: variance is that of the tension within the firs
 TEST_CASE("equivalent flat area: no answer where there is none", "[contact]") {
   const Press press{5, 5, 8, 0, 0};
   CHECK(Seen<>(press)().ok());
-  CHECK_FALSE(Seen<>(press, 20)().ok());               // no free part
-  CHECK_FALSE(Seen<>(press, -6)().ok());               // no contact
-  CHECK_FALSE(Seen<>(press)({.margin_mm = 30}).ok());  // no curve
-  CHECK_FALSE(Seen<>(press)({.spacing_mm = 3}).ok());  // too few
+  CHECK_FALSE(Seen<>(press, 20)().ok());  // no free part
+  CHECK_FALSE(Seen<>(press, -6)().ok());  // no contact
   Seen<> steep(press);
   for (double& h : steep.height.cells) {
     h *= 5;

@@ -51,7 +51,7 @@ bool identical(const A& a, const B& b, double margin = 0) {
   for (Index i = 0; i < a.rows(); ++i) {
     for (Index j = 0; j < a.cols(); ++j) {
       const bool both_nan = std::isnan(a(i, j)) && std::isnan(b(i, j));
-      if (!both_nan && !(std::abs(a(i, j) - b(i, j)) <= margin)) {
+      if (!both_nan && !(std::abs(double(a(i, j)) - double(b(i, j))) <= margin)) {
         return false;
       }
     }

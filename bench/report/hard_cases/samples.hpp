@@ -43,7 +43,7 @@ inline Row long_image() {
                  return sum;
                };
                fingerpad::detail::WindowMeans<std::uint64_t, S> sums(rows, cols, {5, 7});
-               sums.start(0, load);
+               sums.start(load);
                std::vector<S> red(64), green(64), outer(64);
                S running = S(0);
                for (fingerpad::Index i = 0; i < 5; ++i) {
