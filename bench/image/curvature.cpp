@@ -64,7 +64,7 @@ struct Bench {
   /// The same mean of the same depths in long double.
   template <class CameraType>
   Image<long double> exact(const CameraType& camera, bool clamped) const {
-    CurvatureMap<long double> map(camera, depth.rows(), depth.cols(), {double(radius_px)});
+    CurvatureMap<long double> map(camera, depth.rows(), depth.cols(), double(radius_px));
     Image<long double> out(depth.rows(), depth.cols());
     (void)map(depth, out);
     if (!clamped) {

@@ -237,7 +237,7 @@ const OrthographicCamera<double> plan{31, 29, 0.5};
 
 TEST_CASE("curvature, flat area and surface of a contact from every grid", "[adapt]") {
   const Pressed pressed;
-  CurvatureMap<double> curvature(plan, 60, 64, {5});
+  CurvatureMap<double> curvature(plan, 60, 64, 5);
   EquivalentFlatArea<> flat_area(plan, 60, 64);
   struct Answer {
     test::Image<double> curvature{60, 64};

@@ -145,7 +145,7 @@ struct FreePadByPitch {
         return S(9 - 0.025 * (x * x + y * y) + 2e-4 * random.normal());
       }));
     }
-    const auto pad = fit_contact_threshold<S>(plan, frames, {6});
+    const auto pad = fit_contact_threshold<S>(plan, frames, 6);
     return {S(pad.threshold_per_mm), S(pad.median_per_mm), S(pad.noise_per_mm),
             S(pad.median_error_per_mm)};
   }

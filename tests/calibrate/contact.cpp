@@ -49,7 +49,7 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
     const std::vector depths(3, test::depths_of<double>(camera, free_pad(curvature), 70, 80));
     // vertical sections cause a few per cent on the slopes, as many as a camera does
     for (const ThresholdFit<>& pad :
-         {fit_contact_threshold(plan, heights, {8}), fit_contact_threshold(camera, depths, {8})}) {
+         {fit_contact_threshold(plan, heights, 8), fit_contact_threshold(camera, depths, 8)}) {
       CHECK(pad.ok());
       CHECK(pad.median_per_mm == Approx(curvature).epsilon(0.08));
       CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
@@ -61,7 +61,7 @@ TEST_CASE("calibration: half of the free pad's curvature", "[contact_region]") {
 TEST_CASE("calibration: the rules by definition", "[contact_region]") {
   const Index rows = 60, cols = 66;
   const auto camera = test::height_map(rows, cols, 0.16);
-  CurvatureMap<float> map(camera, rows, cols, {8});
+  CurvatureMap<float> map(camera, rows, cols, 8);
   for (const double noise_mm : {0.001, 0.01}) {  // the threshold is set by the level, by the noise
     test::Random random(5);
     std::vector<Image<double>> frames, curvatures;
@@ -98,7 +98,7 @@ TEST_CASE("calibration: the rules by definition", "[contact_region]") {
     const double noise = std::sqrt(variance / static_cast<double>(means.size()));
     const double level = quantile(0.5) / 2, low = quantile(0.001) - 2 * noise;
     CHECK((level < low) == (noise_mm < 0.005));
-    const ThresholdFit pad = fit_contact_threshold(camera, frames, {8});
+    const ThresholdFit pad = fit_contact_threshold(camera, frames, 8);
     CHECK(pad.threshold_per_mm == Approx((std::min)(level, low)).epsilon(1e-12));
     CHECK(pad.median_per_mm == Approx(quantile(0.5)).epsilon(1e-12));
     CHECK(pad.noise_per_mm == Approx(noise).epsilon(1e-12));
@@ -113,7 +113,7 @@ TEST_CASE("calibration: two frames are enough for half of the level", "[contact_
   for (auto& frame : frames) {
     add_noise(frame, 0.002, random);
   }
-  const ThresholdFit pad = fit_contact_threshold(camera, frames, {8});
+  const ThresholdFit pad = fit_contact_threshold(camera, frames, 8);
   CHECK(pad.noise_per_mm > 0.003);
   CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
 }
@@ -123,7 +123,7 @@ TEST_CASE("calibration: the standard error of the median is how far medians scat
   const int pads = 60;
   const auto camera = test::height_map(50, 50, 0.2);
   const auto still = test::depths_of<float>(camera, free_pad(0.05), 50, 50);
-  CHECK(std::isnan(fit_contact_threshold(camera, std::array{still}, {6}).median_error_per_mm));
+  CHECK(std::isnan(fit_contact_threshold(camera, std::array{still}, 6).median_error_per_mm));
   test::Random random(26);
   double sum = 0, squares = 0, said = 0;
   for (int k = 0; k < pads; ++k) {
@@ -131,7 +131,7 @@ TEST_CASE("calibration: the standard error of the median is how far medians scat
     for (auto& frame : frames) {
       add_noise(frame, 0.002, random);
     }
-    const ThresholdFit pad = fit_contact_threshold(camera, frames, {6});
+    const ThresholdFit pad = fit_contact_threshold(camera, frames, 6);
     sum += pad.median_per_mm;
     squares += pad.median_per_mm * pad.median_per_mm;
     said += pad.median_error_per_mm * pad.median_error_per_mm / pads;
@@ -155,8 +155,8 @@ TEST_CASE("calibration: one bad pixel sets the published threshold, but not the 
     spoilt.push_back(frame);
     spoilt.back()(90, 100) -= 0.02F;  // this pixel and the 36 pixels that see it
   }
-  CHECK(fit_contact_threshold(camera, spoilt, {8}).threshold_per_mm ==
-        Approx(fit_contact_threshold(camera, good, {8}).threshold_per_mm).epsilon(0.01));
+  CHECK(fit_contact_threshold(camera, spoilt, 8).threshold_per_mm ==
+        Approx(fit_contact_threshold(camera, good, 8).threshold_per_mm).epsilon(0.01));
   const auto published = [](const std::vector<Image<float>>& frames) {
     return published::threshold_by_slides(
         frames, {.clamps = true, .radius_px = 8, .pitch_mm = 0.1, .step_px = 1});

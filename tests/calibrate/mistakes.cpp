@@ -417,7 +417,7 @@ std::function<std::string()> free_pad(double scale, double share_seen, double no
         }
         frames.push_back(depth);
       }
-      return fit_contact_threshold(camera, frames, {8});
+      return fit_contact_threshold(camera, frames, 8);
     });
   };
 }

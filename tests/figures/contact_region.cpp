@@ -72,7 +72,7 @@ TEST_CASE("contact of finite-element membranes by their heights", "[contact_regi
   const std::vector free = {exact.depth("free")};
   ContactTest test;
   test.ring_px = 12;
-  test.threshold_per_mm = fit_contact_threshold(exact.camera, free, {12}).threshold_per_mm;
+  test.threshold_per_mm = fit_contact_threshold(exact.camera, free, 12).threshold_per_mm;
   CHECK(test.threshold_per_mm == Approx(0.025).epsilon(0.2));
   ContactRegion<> region(exact.camera, 480, 480, test);
   Image<std::uint8_t> mask(480, 480);

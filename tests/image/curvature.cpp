@@ -224,8 +224,8 @@ TEST_CASE("curvature: what refraction off the axis leaves of a tilted plane") {
       depth(i, j) = l;
     }
   }
-  const Image<double> flat = curvatures<Mean::plain>(depth, {6}, camera);
-  const Image<double> bent = curvatures<Mean::plain>(depth, {6}, plan(0.3));
+  const Image<double> flat = curvatures<Mean::plain>(depth, 6, camera);
+  const Image<double> bent = curvatures<Mean::plain>(depth, 6, plan(0.3));
   double worst = 0, worst_bent = 0;
   for (Index i = 20; i <= 100; ++i) {
     for (Index j = 40; j <= 80; ++j) {  // depths of 4 to 12 mm
@@ -307,7 +307,7 @@ TEST_CASE("curvature: same bits on every grid") {
     return 9 - 0.02 * (x * x + y * y) + 0.1 * std::sin(3 * x + y);
   });
   depth(20, 30) = std::nanf("");
-  CurvatureMap<> map(plate, rows, cols, {5});
+  CurvatureMap<> map(plate, rows, cols, 5);
   Image<float> expected(rows, cols);
   const auto result = map(depth, expected);
   REQUIRE(result.has_value());
@@ -365,7 +365,7 @@ TEST_CASE("curvature: images smaller than the ring have no curvature") {
 }
 
 TEST_CASE("curvature: other sizes are refused and nothing is written") {
-  CurvatureMap<> map(plate, 9, 10, {2});
+  CurvatureMap<> map(plate, 9, 10, 2);
   const Image<float> depth(9, 10, 1.0F), narrow(9, 9, 1.0F);
   Image<float> out(9, 10, 7.0F), low(8, 10, 7.0F);
   CHECK_FALSE(map(narrow, out).has_value());
@@ -404,8 +404,8 @@ TEST_CASE("curvature: bad parameters are refused by name, value and range") {
   CHECK(map(25, through(0.1, -1), 4, 5).starts_with("Camera: plate_distance_mm = -"));
   Plan high = plate;
   high.pixel_aspect = 2;
-  CHECK(map({2}, high, 4, 5) == "accepted");  // a ring has pixels above its center
-  CHECK(map({1.9}, high, 4, 5) == "CurvatureMap: camera.pixel_aspect = 2, must be in [0.1, 1.9]");
+  CHECK(map(2, high, 4, 5) == "accepted");  // a ring has pixels above its center
+  CHECK(map(1.9, high, 4, 5) == "CurvatureMap: camera.pixel_aspect = 2, must be in [0.1, 1.9]");
   high.pixel_aspect = 11;
   CHECK(map(25, high, 4, 5) == "CurvatureMap: camera.pixel_aspect = 11, must be in [0.1, 10]");
   CHECK(map(25, plate, 0, 5) == "CurvatureMap: rows = 0, must be in [1, 1000000]");

@@ -136,7 +136,7 @@ Trial contact() {
     return frames;
   };
   const auto fit = [=](const std::vector<Map>& frames) {
-    const auto pad = fit_contact_threshold(camera, frames, {6});
+    const auto pad = fit_contact_threshold(camera, frames, 6);
     return Estimate{{pad.threshold_per_mm, pad.median_per_mm},
                     diagonal({pad.median_error_per_mm / 2, pad.median_error_per_mm})};
   };
