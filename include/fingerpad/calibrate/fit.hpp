@@ -8,21 +8,21 @@ namespace fingerpad {
 inline namespace v0 {
 
 /// A fit that is not ok() says in its field `cause` what is likely wrong; nullptr if it is ok.
-/// Causes of several fits:
+/// Causes of several fits, each with one address in a program, to compare with ==:
 namespace cause {
-inline constexpr const char* not_converged =
+inline constexpr char not_converged[] =
     "the fit has not converged: use more samples or fewer parameters";
-inline constexpr const char* nothing_to_check =
+inline constexpr char nothing_to_check[] =
     "there are as many samples as parameters, so the fit cannot be checked";
-inline constexpr const char* at_end_of_search =
+inline constexpr char at_end_of_search[] =
     "the best value is at an end of the search: use other frames or a wider search";
-inline constexpr const char* gauge_not_tared =
+inline constexpr char gauge_not_tared[] =
     "a constant explains most of the residual: tare the gauge";
-inline constexpr const char* gauge_rotated =
+inline constexpr char gauge_rotated[] =
     "the forces are rotated against the displacements: align the gauge with the image";
-inline constexpr const char* depths_not_in_mm =
+inline constexpr char depths_not_in_mm[] =
     "the depths are too small for a pad: give depths in mm";
-inline constexpr const char* colours_unexplained =
+inline constexpr char colours_unexplained[] =
     "the colours do not follow from the depths: check that both have the same order, place and "
     "frame";
 }  // namespace cause

@@ -65,12 +65,12 @@ struct [[nodiscard]] RimFit {
 };
 
 namespace cause {
-inline constexpr const char* one_pressure =
+inline constexpr char one_pressure[] =
     "the pressures hardly differ, so mu t depends on the stress-free height: record several, or "
     "use a weight";
-inline constexpr const char* no_such_cap =
+inline constexpr char no_such_cap[] =
     "the apex heights are not those of an inflated cap: check radius, rubber and units";
-inline constexpr const char* modulus_uncertain =
+inline constexpr char modulus_uncertain[] =
     "mu t is uncertain by more than 5 %: use pressures further apart, more frames or a heavier "
     "weight";
 }  // namespace cause
