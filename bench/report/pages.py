@@ -157,7 +157,7 @@ def chain_samples(runs):
                                             for s in ("median", "99 %"))
         return [f"{of[0]['policies']}, {of[0]['step']} px", *(number(o["whole_ms"], 3) for o in of),
                 *(error(q) for q in ("depth of a pixel", "contact area", "F_z", "M_z"))]
-    return table(["policies, step", *(f"{flags}, ms" for flags in runs), "depth of a pixel, mm",
+    return table(["chain, step", *(f"{flags}, ms" for flags in runs), "depth of a pixel, mm",
                   "contact area, share", "F_z, share", "M_z, N mm"],
                  map(row, zip(*(run["samples"] for run in runs.values()))))
 
