@@ -151,16 +151,16 @@ class Rim {
   /// with 64; fewer tell nothing.
   template <class Red, class Green>
   bool has_changed(const Red& red, const Green& green, const GreyScale& scale) const {
-    double lit = 0, sum = 0;
+    double used = 0, sum = 0;
     for (const auto& [row, col] : pixels_) {
       const auto g = static_cast<double>(green(row, col));
       if (scale.counts(static_cast<double>(red(row, col))) && scale.counts(g)) {
-        lit += 1;
+        used += 1;
         sum += g / (scale.units_per_level * reference_);
       }
     }
-    const bool mostly_lit = 2 * lit >= static_cast<double>(pixels_.size());
-    return pixels_.size() >= 64 && !(mostly_lit && std::abs(sum / lit - 1) <= 0.05);
+    const bool mostly_used = 2 * used >= static_cast<double>(pixels_.size());
+    return pixels_.size() >= 64 && !(mostly_used && std::abs(sum / used - 1) <= 0.05);
   }
 
  private:

@@ -381,9 +381,9 @@ class GelContact {
       for (const int k : holes_) {
         cv::Vec3f sum;
         float count = 0;
-        for (const int beside : {k - 1, k + 1, k - inner_.width, k + inner_.width}) {
-          sum += share_(beside) * image(beside);
-          count += share_(beside);
+        for (const int neighbour : {k - 1, k + 1, k - inner_.width, k + inner_.width}) {
+          sum += share_(neighbour) * image(neighbour);
+          count += share_(neighbour);
         }
         image(k) += 1.4F * (sum / (std::max)(count, 1.0F) - image(k));
       }

@@ -201,8 +201,8 @@ class GelSlide {
   double pitch() {
     x_.clear();
     for (Index k = 0; k + dots_.width < detail::size_of(free_); ++k) {
-      for (const Index beside : {Index(1), dots_.width}) {
-        const double distance = norm(free_[k + beside] - free_[k]);
+      for (const Index next : {Index(1), dots_.width}) {
+        const double distance = norm(free_[k + next] - free_[k]);
         if (is_finite(distance)) {
           x_.push_back(distance);
         }

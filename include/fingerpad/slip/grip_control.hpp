@@ -186,17 +186,17 @@ class GripControl {
     held_s_ = held_s_ + step_s;
     const S age_s = S(static_cast<double>(slip.reference_age)) * step_s;
     const bool recent = !has_slipped_ || age_s < held_s_;
-    const bool news = recent && is_finite(slip.dots_ratio);
-    slipping_ = loses_load || (recent && back) || (news && slip.dots_ratio < S(slip_ratio));
+    const bool has_ratio = recent && is_finite(slip.dots_ratio);
+    slipping_ = loses_load || (recent && back) || (has_ratio && slip.dots_ratio < S(slip_ratio));
     if (slipping_) {
       friction_ = smooth_friction_ / (S(1) + options_.slip_margin);
       held_s_ = S(0);
       has_slipped_ = true;
     } else {
       // without a new ratio, L* does not grow, and stays within the limit less the margin
-      search(news ? slip.dots_ratio : S(slip_ratio), counted_s);
+      search(has_ratio ? slip.dots_ratio : S(slip_ratio), counted_s);
       const S borne = slip.limit / (S(1) + options_.slip_margin);
-      slipping_ = !news && borne < friction_;
+      slipping_ = !has_ratio && borne < friction_;
       friction_ = slipping_ ? borne : friction_;
     }
     const S gained_n = S(0) < load_rate_n_per_s_ ? load_rate_n_per_s_ * options_.response_s : S(0);

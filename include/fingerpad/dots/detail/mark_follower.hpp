@@ -54,8 +54,8 @@ class MarkFollower {
     bool placed = false;  ///< in this frame, found or not
     bool likely = false;  ///< found but for its shape, which lost neighbours may spoil
     Point free = missing(), last = missing(), velocity = {0, 0};
-    Point place = missing();  ///< found, else where it would be
-    Point news = {0, 0};      ///< place less what its last motion made expect
+    Point place = missing();   ///< found, else where it would be
+    Point deviation = {0, 0};  ///< place less what its last motion made expect
     DiscMap map = {{1, 0}, {0, 1}};
     Point slope = {0, 0};
     double contrast = 0, residual = 0;  ///< on the free pad, as a share of light and of contrast
@@ -292,14 +292,15 @@ class MarkFollower {
   }
 
   /// The displacement of a mark from the free pad and its derivatives, as its neighbours are
-  /// displaced; those not placed yet are taken to have this mark's news.
+  /// displaced; those not placed yet are taken to have this mark's deviation.
   std::array<Point, terms> displacement(std::size_t k) const {
     std::array<Point, terms> d{};
     const std::size_t* const others = neighbours_.data() + k * around_;
     const Weights* const weights = weights_.data() + k * around_;
     for (std::size_t n = 0; n < around_; ++n) {
       const Mark& other = marks_[others[n]];
-      const Point at = other.placed ? other.place : other.last + other.velocity + marks_[k].news;
+      const Point at =
+          other.placed ? other.place : other.last + other.velocity + marks_[k].deviation;
       const Point moved = at - other.free;
       for (std::size_t i = 0; i < terms; ++i) {
         d[i] += weights[n][i] * moved;
@@ -330,8 +331,8 @@ class MarkFollower {
         Mark& m = marks_[k];
         if (!m.found) {
           if (round == 0) {
-            m.news = neighbours_news(k);
-            m.place = m.last + m.velocity + m.news;
+            m.deviation = neighbours_deviation(k);
+            m.place = m.last + m.velocity + m.deviation;
           }
           lost += static_cast<std::size_t>(!locate(image, k, wide));
         }
@@ -339,13 +340,13 @@ class MarkFollower {
     }
   }
 
-  /// Mean news of the neighbours that are found.
-  Point neighbours_news(std::size_t k) const {
+  /// Mean deviation of the neighbours that are found.
+  Point neighbours_deviation(std::size_t k) const {
     Point sum = {0, 0};
     double count = 0;
     for (const std::size_t n : neighbours(k)) {
       if (marks_[n].found) {
-        sum += marks_[n].news;
+        sum += marks_[n].deviation;
         count += 1;
       }
     }
@@ -363,7 +364,7 @@ class MarkFollower {
             sum += marks_[n].place - marks_[n].last;
           }
           m.place = m.last + sum / double(around_);
-          m.news = m.place - m.last - m.velocity;
+          m.deviation = m.place - m.last - m.velocity;
         }
       }
     }
@@ -391,7 +392,7 @@ class MarkFollower {
         fit.good && contrast > least_contrast && contrast < most_contrast && m.surprise_px < reach;
     m.found = m.likely && m.residual_ratio < most_residual * noise_;
     m.place = m.likely ? fit.center : guess;
-    m.news = m.place - m.last - m.velocity;
+    m.deviation = m.place - m.last - m.velocity;
     if (m.found && is_finite(noise_)) {
       m.slope = fit.slope;
       m.light = fit.light;
