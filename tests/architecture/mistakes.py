@@ -20,7 +20,7 @@ from pathlib import Path
 PAGE, CELLS = "docs/mistakes.md", "tests/architecture/mistakes.txt"
 STATUS = re.compile(r"`(\w+)`")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
-CAUSE = re.compile(r'const char\* (\w+) =\s*((?:"[^"]*"\s*)+);')
+CAUSE = re.compile(r'constexpr char (\w+)\[\] =\s*((?:"[^"]*"\s*)+);')
 NAME_OF = re.compile(r'case \w+::(\w+):\s*return "([^"]*)"|::(\w+)\s*\? "([^"]*)"')
 
 

@@ -55,7 +55,7 @@ void tell_depth_and_contact(Results& tell) {
   ContactTest test;
   test.ring_px = 4;
   test.min_region_px = 10;
-  static ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
+  ContactRegion<> region(pad.camera, pad.rows, pad.cols, test);
   test::Image<std::uint8_t> mask(pad.rows, pad.cols);
   const auto contact = region(depth, mask);
   tell("contact pixels", static_cast<double>(contact.contact_px));
@@ -87,8 +87,8 @@ void tell_images(Results& tell) {
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(free_mm.cells[k]);
   }
-  static NeighbourLightCompensation<> compensate({.radius_px = 6},
-                                                 static_cast<float>(pad.camera.pitch_mm), from);
+  NeighbourLightCompensation<> compensate({.radius_px = 6}, static_cast<float>(pad.camera.pitch_mm),
+                                          from);
   for (std::size_t k = 0; k < from.cells.size(); ++k) {
     from.cells[k] = static_cast<float>(pressed_mm.cells[k]);
   }
@@ -125,7 +125,7 @@ void tell_dots(Results& tell) {
   const StridedView<const std::uint8_t> contact(touch.data(), 9, 9, 9);
   ObjectMotion<> motion(9, 9);
   ContactShift<> shift(view(free));
-  static TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
+  TractionField field(view(free), TractionOptions<double>{.mu_t_n_per_mm = 0.5});
   StickRatio<> stick(9, 9, {.noise = 0.005});
   for (int frame = 0; frame < 8; ++frame) {
     auto now = dots_moved<Point>(0.1 * frame, 0.02 * frame);

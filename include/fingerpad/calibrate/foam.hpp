@@ -176,7 +176,7 @@ class TaxelNoiseCalibration {
 /// Comparison of a rule's alarms with marked onsets of slip. A rule is judged by both its recall
 /// and its precision: a rule that always alarms finds every onset.
 struct [[nodiscard]] PreslipFit {
-  static constexpr const char* onsets_not_found =
+  static constexpr char onsets_not_found[] =
       "no threshold separates the onsets from the rest: check the marks, or use another rule";
 
   const char* cause = nullptr;  ///< likely mistake
