@@ -325,7 +325,7 @@ TEST_CASE("published contact conditions: thresholds from the free pad, by defini
     }
   }
   CHECK(lows > 25);
-  CHECK(published::threshold_by_slides(frames, o) == Approx(least).epsilon(1e-9));
+  CHECK(published::threshold_by_slides(frames, o) == Approx(least).epsilon(1e-12));
   auto bad = o;
   bad.directions = 0;
   CHECK_THROWS_AS(published::threshold_by_slides(frames, bad), parameter_error);
