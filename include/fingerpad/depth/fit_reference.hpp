@@ -21,6 +21,7 @@
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
+#include "fingerpad/math/detail/triangle.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

@@ -4,11 +4,9 @@
 // The surface on which the dots in contact lie: its normals, and axes along it.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
 
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
+#include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
@@ -42,55 +40,29 @@ struct Quadric {
   }
 };
 
-/// The surface from the normal equations of its terms. A plane if these do not determine the
-/// quadratic terms; level if they do not determine a plane either.
-template <class S>
-Quadric<S> quadric_of(const SmallMatrix<S, 6>& a, const std::array<S, 6>& b) {
-  Quadric<S> q;
-  const NormalEquations<S, 6> bent(a, 1e-3);
-  if (bent.good) {
-    q.c = bent.solve(b);
-    return q;
-  }
-  SmallMatrix<S, 3> flat = zero_matrix<S, 3>();
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      flat[i][j] = a[i][j];
-    }
-  }
-  const NormalEquations<S, 3> plane(flat, 1e-6);
-  if (plane.good) {
-    const auto c = plane.solve({b[0], b[1], b[2]});
-    q.c = {c[0], c[1], c[2], S(0), S(0), S(0)};
-  }
-  return q;
-}
-
-/// The surface through all points that for_each(visit) visits. It is called twice.
+/// The surface through all points that for_each(visit) visits. It is called twice. A plane if the
+/// points do not determine the quadratic terms; level if they do not determine a plane either.
 template <class S, class ForEach>
 Quadric<S> quadric_through(const ForEach& for_each) {
-  Point3<S> middle = {S(0), S(0), S(0)};
-  Index dots = 0;
+  Quadric<S> q;
   for_each([&](const Point3<S>& p) {
-    middle += p;
-    ++dots;
+    q.middle += p;
+    ++q.dots;
   });
-  middle = middle / S(static_cast<double>((std::max)(dots, Index(1))));
-  SmallMatrix<S, 6> a = zero_matrix<S, 6>();
-  std::array<S, 6> b = detail::zeros<S, 6>();
+  q.middle = q.middle / S(static_cast<double>((std::max)(q.dots, Index(1))));
+  ProductSums<S, 7> sums;
   for_each([&](const Point3<S>& p) {
-    const auto t = Quadric<S>::terms(S(p.x - middle.x), S(p.y - middle.y));
-    const S z = p.z - middle.z;
-    for (std::size_t i = 0; i < 6; ++i) {
-      b[i] = b[i] + t[i] * z;
-      for (std::size_t j = 0; j <= i; ++j) {
-        a[i][j] = a[i][j] + t[i] * t[j];
-      }
-    }
+    const auto t = Quadric<S>::terms(S(p.x - q.middle.x), S(p.y - q.middle.y));
+    sums.add({t[0], t[1], t[2], t[3], t[4], t[5], p.z - q.middle.z});
   });
-  Quadric<S> q = quadric_of(a, b);
-  q.middle = middle;
-  q.dots = dots;
+  const NormalEquations<S, 6> bent(sums.template corner<6>(), 1e-3);
+  const NormalEquations<S, 3> flat(sums.template corner<3>(), 1e-6);
+  if (bent.good) {
+    q.c = bent.solve(sums.template column<6>(6));
+  } else if (flat.good) {
+    const auto c = flat.solve(sums.template column<3>(6));
+    q.c = {c[0], c[1], c[2], S(0), S(0), S(0)};
+  }
   return q;
 }
 
