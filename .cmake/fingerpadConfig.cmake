@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-# find_package(fingerpad 0.1 COMPONENTS eigen opencv) defines fingerpad::fingerpad and, for each
+# find_package(fingerpad 0.2 COMPONENTS eigen opencv) defines fingerpad::fingerpad and, for each
 # component, a target fingerpad::<component> that links the other library as well.
 include("${CMAKE_CURRENT_LIST_DIR}/fingerpadTargets.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/fingerpadComponents.cmake")

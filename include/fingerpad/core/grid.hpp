@@ -33,6 +33,10 @@ template <class G> concept has_cells_in_a_row = !has_size_members<G> && requires
   g.data() + g.size();
   g[0];
 };
+template <class G> concept has_bits_in_a_row = !has_size_members<G> && requires(G& g) {
+  g.flip();  // std::vector<bool>
+  g[0];
+};
 template <class Cell> concept has_channels = requires(const Cell& cell) {
   cell[0];
 };
@@ -43,12 +47,15 @@ template <class G> concept has_size_fields = requires(const G& g) {
 
 /// The one customisation point. Required: static rows(g), cols(g), at(g, row, col), where `at` of
 /// a mutable grid returns something that can be assigned to. Optional, for grids in plain memory:
-/// static data(g), row_stride(g), col_stride(g), strides counted in cells. The two most
-/// common mistakes get a one-line error message wherever a grid is expected.
+/// static data(g), row_stride(g), col_stride(g), strides counted in cells. The most common
+/// mistakes get a one-line error message wherever a grid is expected.
 template <class G>
 struct grid_traits {
   static_assert(!detail::has_cells_in_a_row<G>,
                 "a vector has no rows and columns: pass fingerpad::grid_of(vector, rows, cols)");
+  static_assert(!detail::has_bits_in_a_row<G>,
+                "a std::vector<bool> has no cells in memory: take a std::vector<unsigned char> and "
+                "pass fingerpad::grid_of(vector, rows, cols)");
   static_assert(
       !detail::has_size_fields<G>,
       "the type of the pixels of a cv::Mat is not known: include fingerpad/adapt/opencv.hpp and "
@@ -110,6 +117,9 @@ inline constexpr bool always_false = false;  ///< of a template argument, for st
 template <class G, class T = void>
 constexpr void writes_to() {
   if constexpr (grid<G>) {
+    static_assert(std::is_void_v<T> || std::is_enum_v<T> || !std::is_integral_v<cell_t<G>>,
+                  "this grid is written to: whole numbers would cut off fractions and NaN; give it "
+                  "cells of float or double");
     static_assert(writable_grid<G, std::conditional_t<std::is_void_v<T>, cell_t<G>, T>>,
                   "this grid is written to: its cells must be assignable, neither const nor "
                   "computed");
@@ -285,6 +295,14 @@ auto grid_of(Cells& cells, Index rows, Index cols) {
 template <detail::has_cells_in_a_row Cells>
   requires(!std::is_lvalue_reference_v<Cells>)
 auto grid_of(Cells&& temporary, Index rows, Index cols) = delete;
+/// Gives std::vector<bool> a readable compile error.
+template <class Bits>
+  requires(detail::has_bits_in_a_row<std::remove_cvref_t<Bits>>)
+StridedView<unsigned char> grid_of(Bits&&, Index, Index) {
+  static_assert(detail::always_false<Bits>,
+                "a std::vector<bool> has no cells in memory: take a std::vector<unsigned char>");
+  return {};
+}
 
 /// The rectangle of `row_count` x `col_count` cells whose first cell is (row, col).
 template <class T>
