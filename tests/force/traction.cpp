@@ -161,7 +161,7 @@ TEST_CASE("membrane triangle: the pull of the library", "[traction]") {
   const auto force = test::corner_forces(test::stress_free(some_triangle), pulled_triangle);
   std::array<Vector, 3> pulls;
   Vector normal;
-  REQUIRE(free.pull(pulled_triangle[0], pulled_triangle[1], pulled_triangle[2], pulls, normal));
+  REQUIRE(free.pull(pulled_triangle[0], pulled_triangle[1], pulled_triangle[2], 0, pulls, normal));
   for (std::size_t k = 0; k < 3; ++k) {
     CHECK(distance(pulls[k], force[k]) < 1e-14);
   }
@@ -173,7 +173,7 @@ TEST_CASE("membrane triangle: a stretch above 5 or below 1 / 5 is refused", "[tr
   std::array<Vector, 3> pulls;
   Vector normal;
   const auto taken = [&](double a, double b) {
-    return free.pull({0, 0, 0}, {a, 0, 0}, {0, b, 0}, pulls, normal);
+    return free.pull({0, 0, 0}, {a, 0, 0}, {0, b, 0}, 0, pulls, normal);
   };
   for (const double b : {0.21, 0.5, 1.0, 2.0, 4.9}) {
     CAPTURE(b);
@@ -186,9 +186,9 @@ TEST_CASE("membrane triangle: a stretch above 5 or below 1 / 5 is refused", "[tr
     }
   }
   using Triangle = detail::traction::Triangle<double>;
-  CHECK(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, 2e-3, 0}).area_mm2 == Approx(1e-3));
-  CHECK(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, 5e-4, 0}).area_mm2 == 0);
-  CHECK(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, missing, 0}).area_mm2 == 0);
+  CHECK(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, 2e-3, 0}).height_mm == Approx(2e-3));
+  CHECK_FALSE(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, 5e-4, 0}).is_known());
+  CHECK_FALSE(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, missing, 0}).is_known());
 }
 
 TEST_CASE("traction: the pull of a cell is the mean over both diagonals", "[traction]") {
@@ -238,6 +238,12 @@ TEST_CASE("traction: an inflated cap carries no load", "[traction]") {
   CHECK(b.tension() == Approx(b.pressure() * b.radius * b.stretch / 2));
   CHECK(size(r.force_n) == 0);
   CHECK(size(r.moment_n_mm) == 0);
+
+  // rubber with a second constant holds more
+  const double share = 0.3, sq = b.stretch * b.stretch;
+  TractionField other(cap(13, 1.5, b.radius, 1), {.mooney_share = share});
+  const auto held = other(cap(13, 1.5, b.radius, b.stretch), Flags(13, 13, 0), b.pressure());
+  CHECK(held.mu_t_n_per_mm == Approx(b.mu_t / (1 - share + share * sq)).epsilon(1e-3));
 }
 
 TEST_CASE("traction: a stretched sheet on a plate is pressed by p", "[traction]") {
@@ -500,6 +506,7 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
   CHECK(modulus(0.5) == "accepted");
   CHECK(test::begins_with(modulus(0), "TractionOptions: mu_t_n_per_mm = 0, must be"));
   CHECK(test::begins_with(modulus(missing), "TractionOptions: mu_t_n_per_mm = "));
+  CHECK(test::begins_with(with({.mooney_share = 1.1}), "TractionOptions: mooney_share = 1.1, must"));
   CHECK(test::begins_with(with({.min_free_dots = 0}), "TractionOptions: min_free_dots = 0, must"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(2, 5)); }),
                           "TractionField: rows = 2, must be"));

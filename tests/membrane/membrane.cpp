@@ -80,6 +80,15 @@ TEST_CASE("rubber: the pull is the slope of the energy", "[membrane]") {
   });
 }
 
+TEST_CASE("rubber: the pull of two principal stretches", "[membrane]") {
+  rc::prop("for any stretch", [] {
+    const double a = test::uniform(0.5, 2), b = test::uniform(0.5, 2), m = test::uniform(0, 0.6);
+    const auto pull = parts(rubber_pull(Point{0, a, 0}, Point{0, 0, b}, m));
+    RC_ASSERT(std::fabs(rubber_pull(a, b, m) - pull[1]) < 1e-12);
+    RC_ASSERT((pull[0] == 0 && pull[2] == 0));
+  });
+}
+
 TEST_CASE("rubber: slopes of the pull", "[membrane]") {
   rc::prop("for any stretch", [] {
     const auto [a, b] = any_stretch();

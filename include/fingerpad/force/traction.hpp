@@ -4,10 +4,10 @@
 // The load of the object on each dot of the membrane: maps of contact pressure and shear, and force
 // and moment as their sums. The method is not in the papers. A membrane carries load by tension
 // alone:
-//   q = -(div T + p n),   T = (mu t / J) (B - J^-2 P),   B = F F^T.
+//   q = -(div T + p n).
 // The load q is per current area, p is the pressure of the fluid, and n is the normal out of the
-// pad. F is the surface deformation gradient against the stress-free membrane, J = det F, and P the
-// identity on the surface.
+// pad. The tension T follows from the stretch against the stress-free membrane
+// (membrane/rubber.hpp).
 //
 // In discrete form, the divergence at a dot is the pull of the triangles around it, the derivative
 // of their stored energy. Each cell of four dots is divided by either of its diagonals, and its
@@ -36,6 +36,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -95,6 +96,7 @@ struct TractionOptions {
   /// material, or is the mean free_mu_t_n_per_mm of frames of the free pad. Empty: computed from
   /// the free part of each frame.
   std::optional<S> mu_t_n_per_mm = {};
+  S mooney_share = S(0);  ///< second constant of the rubber, in [0, 1], as that of StressFreeCap
   /// Smallest number of dots of the free part from which mu t is computed or checked, >= 1. The
   /// noise of mu t goes with the inverse root of their number.
   Index min_free_dots = 40;
@@ -115,6 +117,7 @@ std::string check(const TractionOptions<S>& o) {
   return check("TractionOptions", {{"mu_t_n_per_mm",
                                     o.mu_t_n_per_mm.value_or(S(1)),
                                     {.min = 0, .max = 1e6, .above_min = true, .below_max = true}},
+                                   {"mooney_share", o.mooney_share, within(0, 1)},
                                    {"min_free_dots", o.min_free_dots, at_least(1)},
                                    {"ring_dots", o.ring_dots, within(0, 5)},
                                    {"fade_dots", o.fade_dots, within(0, 20)},
@@ -129,44 +132,46 @@ Point3<S> twice_area(const Point3<S>& x, const Point3<S>& y, const Point3<S>& z)
   return cross(y - x, z - y);
 }
 
-/// A triangle of incompressible neo-Hookean membrane. Per stress-free area and mu t it stores
-///   W = (|F|^2 + J^-2 - 3) / 2.
-/// |F|^2 is a sum over the squares of the edges, weighted with half the cotangents of the
-/// stress-free angles opposite to them over the area; J is the area over the stress-free one.
+/// A triangle of membrane between the corners x, y and z.
 template <scalar S>
 struct Triangle {
-  S area_mm2 = S(0);  ///< without stress; 0: a dot is missing, or it is flatter than 1 : 1000
-  std::array<S, 3> weight = {S(0), S(0), S(0)};  ///< of the edges x y, y z and z x
+  // Without stress x lies at (0, 0) of its plane, y at (base, 0) and z at (shift, height).
+  S base_mm = S(0);  ///< 0: a dot is missing, or it is flatter than 1 : 1000
+  S shift_mm = S(0), height_mm = S(0);
 
   Triangle() = default;
   Triangle(const Point3<S>& x, const Point3<S>& y, const Point3<S>& z) {
-    const std::array<Point3<S>, 3> edge = {y - x, z - y, x - z};
-    const S doubled_sq = squared_norm(twice_area(x, y, z));
+    const Point3<S> a = y - x, b = z - y, c = x - z;
+    const S doubled = norm(twice_area(x, y, z));
     S longest_sq = S(0);
-    for (std::size_t k = 0; k < 3; ++k) {
-      longest_sq = longest_sq < squared_norm(edge[k]) ? squared_norm(edge[k]) : longest_sq;
-      weight[k] = -dot(edge[(k + 1) % 3], edge[(k + 2) % 3]) / doubled_sq;
+    for (const Point3<S>& edge : {a, b, c}) {
+      longest_sq = longest_sq < squared_norm(edge) ? squared_norm(edge) : longest_sq;
     }
-    if (doubled_sq > square(S(1e-3) * longest_sq)) {  // false for NaN
-      using std::sqrt;
-      area_mm2 = sqrt(doubled_sq) / S(2);
+    if (doubled > S(1e-3) * longest_sq) {  // false for NaN
+      base_mm = norm(a);
+      shift_mm = -dot(a, c) / base_mm;
+      height_mm = doubled / base_mm;
     }
   }
 
-  /// Finds the pull of the membrane on its corners, -area dW/dx, in mm, and twice its area vector.
-  /// False where a principal stretch lies beyond [1 / 5, 5]: the dots must be wrong. The squares of
-  /// the stretches are the roots of s^2 - |F|^2 s + J^2.
+  bool is_known() const { return value(base_mm) > 0; }
+
+  /// Finds the pull of the membrane on its corners for mu t = 1 N/mm, the derivatives of its stored
+  /// energy, in mm, and twice its area vector. False where a principal stretch lies beyond [1 / 5,
+  /// 5]: the dots must be wrong. The squares of the stretches are the roots of
+  /// s^2 - |F|^2 s + J^2.
   bool pull(const Point3<S>& x,
             const Point3<S>& y,
             const Point3<S>& z,
+            const S& mooney_share,
             std::array<Point3<S>, 3>& pulls,
             Point3<S>& normal) const {
-    const Point3<S> a = y - x, b = z - y, c = x - z;
+    const S in_base = S(1) / base_mm, in_height = S(1) / height_mm;
+    const Point3<S> along = in_base * (y - x);
+    const Point3<S> across = in_height * (z - x - shift_mm * along);
     normal = twice_area(x, y, z);
-    const S stretch_sq =
-        weight[0] * squared_norm(a) + weight[1] * squared_norm(b) + weight[2] * squared_norm(c);
-    const S normal_sq = squared_norm(normal);
-    const S ratio_sq = normal_sq / square(S(2) * area_mm2);
+    const S stretch_sq = squared_norm(along) + squared_norm(across);
+    const S ratio_sq = squared_norm(normal) / square(base_mm * height_mm);
     const S most = S(25), least = S(1) / most;
     const S above = most * (most - stretch_sq) + ratio_sq;
     const S below = least * (least - stretch_sq) + ratio_sq;
@@ -174,10 +179,11 @@ struct Triangle {
           value(stretch_sq) >= value(S(2) * least))) {
       return false;
     }
-    const S resist = area_mm2 / (ratio_sq * normal_sq);  // J moves with half the edge, turned
-    pulls[0] = area_mm2 * (weight[0] * a - weight[2] * c) - resist * cross(b, normal);
-    pulls[1] = area_mm2 * (weight[1] * b - weight[0] * a) - resist * cross(c, normal);
-    pulls[2] = -(pulls[0] + pulls[1]);
+    const Point3<S> half_across = S(0.5) * rubber_pull(across, along, mooney_share);
+    pulls[2] = -base_mm * half_across;
+    pulls[1] = shift_mm * half_across -
+               S(0.5) * height_mm * rubber_pull(along, across, mooney_share);
+    pulls[0] = -(pulls[1] + pulls[2]);
     return true;
   }
 };
@@ -218,7 +224,7 @@ class TractionField {
                 &z = place_[cell[(c + 1) % 4]];
           ears_[at(i, j)][c] = detail::traction::Triangle<S>(x, y, z);
           const S rise = detail::traction::twice_area(x, y, z).z;
-          upward += value(ears_[at(i, j)][c].area_mm2) > 0 ? rise : S(0);
+          upward += ears_[at(i, j)][c].is_known() ? rise : S(0);
         }
       }
     }
@@ -377,8 +383,8 @@ class TractionField {
           const auto& x = place_[dots[(c + 3) % 4]];
           const auto& y = place_[dots[c]];
           const auto& z = place_[dots[(c + 1) % 4]];
-          known = known && is_finite(y) && value(ears_[cell][c].area_mm2) > 0;
-          sound = known && sound && ears_[cell][c].pull(x, y, z, pulls[c], normal[c]);
+          known = known && is_finite(y) && ears_[cell][c].is_known();
+          sound = known && sound && ears_[cell][c].pull(x, y, z, options_.mooney_share, pulls[c], normal[c]);
         }
         sound =
             sound && value(dot(normal[0], normal[2])) > 0 && value(dot(normal[1], normal[3])) > 0;

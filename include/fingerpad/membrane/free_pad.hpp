@@ -11,6 +11,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -54,11 +55,9 @@ struct FreeRim {
 };
 
 /// Shoots from the apex. S is the arc from it, rho and r are the radii without and with stress, and
-/// lambda_2 = r / rho. The tensions per mu t are
-///   T_1 = (lambda_1 / lambda_2 - (lambda_1 lambda_2)^-3) (1 - m + m lambda_2^2),
-/// and T_2 with 1 and 2 exchanged. The balance of the part inside r gives T_1 = q r / (2 sin(phi))
-/// with q = p / (mu t). The profile follows from r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi),
-///   phi' = lambda_1 (q - T_2 sin(phi) / r) / T_1.
+/// lambda_2 = r / rho; T_1 and T_2 are the tensions of the stretched membrane per mu t. The balance
+/// of the part inside r gives T_1 = q r / (2 sin(phi)) with q = p / (mu t). The profile follows from
+///   r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi), phi' = lambda_1 (q - T_2 sin(phi) / r) / T_1.
 template <scalar S>
 class FreePad {
  public:
@@ -78,7 +77,7 @@ class FreePad {
     }
     const Place at = profile(*stretch_at, load_per_mm);
     const S hoop = at.r / cap_.rho_mm(S(0));
-    const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop);
+    const S along = stretch_of(load_per_mm * at.r / (S(2) * sin(at.phi)), hoop, *stretch_at);
     return FreeRim<S>{at.phi, along, -at.z};
   }
 
@@ -131,31 +130,23 @@ class FreePad {
     return stretch;
   }
 
-  Place change(const S& arc, const Place& at, const S& q) const {
+  Place change(const S& arc, const Place& at, const S& q, S& x) const {
     using std::cos;
     using std::sin;
-    const S m = cap_.mooney_share;
     const S sine = sin(at.phi);
     const S hoop = at.r / (bend_mm_ * sin(arc / bend_mm_));
     const S t1 = q * at.r / (S(2) * sine);
-    const S x = stretch_of(t1, hoop);
-    const S area_cubed = x * hoop * x * hoop * x * hoop;
-    const S t2 = (hoop / x - S(1) / area_cubed) * (S(1) - m + m * x * x);
+    x = stretch_of(t1, hoop, x);
+    const S t2 = rubber_pull(hoop, x, cap_.mooney_share) / x;
     return {x * cos(at.phi), -x * sine, x * (q - t2 * sine / at.r) / t1};
   }
 
-  /// lambda_1 for a tension, from lambda - k lambda^-3 = c by Newton's method. The left side rises
-  /// and is concave, so the iteration converges from below.
-  S stretch_of(const S& t1, const S& hoop) const {
-    const S m = cap_.mooney_share;
-    const S k = S(1) / (hoop * hoop);
-    const S c = t1 * hoop / (S(1) - m + m * hoop * hoop);
-    S x = S(1);
-    for (int step = 0; step < 8; ++step) {
-      const S cubed = k / (x * x * x);
-      x = x - (x - cubed - c) / (S(1) + S(3) * cubed / x);
-    }
-    return x;
+  /// lambda_1 for a tension along the meridian, from nearly that value; its pull per stress-free
+  /// length is T_1 lambda_2.
+  S stretch_of(const S& t1, const S& hoop, S near) const {
+    (void)detail::membrane::stretch_of_pull({t1 * hoop, S(0), S(0)}, {S(0), hoop, S(0)},
+                                            cap_.mooney_share, near);
+    return near;
   }
 
   /// State at the rim, by the Runge-Kutta method from the apex at (0, 0). r = 0 if the cap closes
@@ -164,21 +155,21 @@ class FreePad {
                 const S& q,
                 int steps = 60,
                 std::vector<Point2<S>>* points = nullptr) const {
-    const S l = apex_stretch, l_sq = l * l, m = cap_.mooney_share;
-    const S tension = (S(1) - S(1) / (l_sq * l_sq * l_sq)) * (S(1) - m + m * l_sq);
     S arc = arc_mm_ / S(2000);
     const S step = (arc_mm_ - arc) / S(steps);
+    const S l = apex_stretch, tension = rubber_pull(l, l, cap_.mooney_share) / l;
     const S bend = l * q / (S(2) * tension);
     Place at = {l * arc, -bend * l * arc * arc / S(2), bend * arc};
+    S stretch = l;
     const auto moved = [](const Place& from, const S& by, const Place& d) {
       return Place{from.r + by * d.r, from.z + by * d.z, from.phi + by * d.phi};
     };
     for (int k = 0; k < steps; ++k) {
       const S half = step / S(2);
-      const Place a = change(arc, at, q);
-      const Place b = change(arc + half, moved(at, half, a), q);
-      const Place c = change(arc + half, moved(at, half, b), q);
-      const Place d = change(arc + step, moved(at, step, c), q);
+      const Place a = change(arc, at, q, stretch);
+      const Place b = change(arc + half, moved(at, half, a), q, stretch);
+      const Place c = change(arc + half, moved(at, half, b), q, stretch);
+      const Place d = change(arc + step, moved(at, step, c), q, stretch);
       const Place sum = moved(moved(moved(a, S(2), b), S(2), c), S(1), d);
       at = moved(at, step / S(6), sum);
       arc = arc + step;

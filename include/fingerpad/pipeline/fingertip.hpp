@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "fingerpad/pipeline/detail/fingertip_stages.hpp"
-#include "fingerpad/pipeline/detail/frame_samples.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {

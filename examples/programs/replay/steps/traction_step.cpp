@@ -12,8 +12,13 @@ TractionStep make_traction_step(const Recording& recording) {
   if (!recording.stress_free_dots) {
     return {};
   }
+  fingerpad::TractionOptions<> options;
+  if (recording.sensor.rim) {
+    options.mooney_share = recording.sensor.rim->mooney_share;
+  }
   // Shared, so that copies of the std::function do not copy the maps.
-  const auto field = std::make_shared<fingerpad::TractionField<>>(*recording.stress_free_dots);
+  const auto field =
+      std::make_shared<fingerpad::TractionField<>>(*recording.stress_free_dots, options);
   return [field](const FrameDots& dots, double pressure_mpa) {
     TractionFrame frame;
     frame.result = (*field)(dots.dots_mm, dots.in_contact, pressure_mpa);
