@@ -19,5 +19,5 @@ bool curvature_of(CurvatureMap<>& map,
                   const StridedView<const float>& depth_mm,
                   const StridedView<float>& clamped,
                   const StridedView<float>& plain) {
-  return map(depth_mm, clamped).has_value() && map.mean(0, map.rows(), 0, map.cols(), plain);
+  return map(depth_mm, clamped).has_value() && map(depth_mm, clamped, plain).has_value();
 }

@@ -114,8 +114,7 @@ class ContactRegion {
         curvature_(camera, rows, cols, test.ring_px, test.directions),
         statistic_(static_cast<std::size_t>(image_.size()), not_a_number<S>()),
         raw_(statistic_),
-        mean_(statistic_),
-        free_(statistic_) {
+        mean_(statistic_) {
     for (Index i = 0; i < rows; ++i) {
       for (Index j = 0; j < cols; ++j) {
         const auto seen = [&](double depth_mm) {
@@ -146,23 +145,16 @@ class ContactRegion {
       return result;
     }
     const auto statistic = image_.view(statistic_.data());
+    const auto raw = image_.view(raw_.data());
     const auto marks = regions_.marks();
-    const S threshold = S(test_.threshold_per_mm);
-    result.unknown_px = *curvature_(depth, statistic);
-    detail::PixelBox seeds = {image_.rows, 0, image_.cols, 0};
+    result.unknown_px =
+        *(test_.places_edge ? curvature_(depth, statistic, raw) : curvature_(depth, statistic));
     for (Index i = 0; i < image_.rows; ++i) {
-      detail::Mark *row = marks.row(i), *end = row + image_.cols;
-      detail::mark_below(threshold, statistic.row(i), image_.cols, row);
-      const detail::Mark* first = detail::find_mark(row, end, detail::Mark::seed);
-      if (first != end) {
-        while (end[-1] != detail::Mark::seed) {
-          --end;
-        }
-        seeds.include(i, first - row, end - row);
-      }
+      detail::mark_below(S(test_.threshold_per_mm), statistic.row(i), image_.cols, marks.row(i));
     }
-    if (test_.places_edge && seeds.first_row < seeds.last_row) {
-      find_curvatures(seeds);
+    if (test_.places_edge && regions_.next_seed(0) < image_.size()) {
+      find_free_plane();
+      detail::mean_of_nine(raw, spread_rows_, spread_cols_, image_.view(mean_.data()));
     }
     const auto keep = [this](const detail::Regions::Region& region) {
       return region.pixels() >= test_.min_region_px;
@@ -245,47 +237,50 @@ class ContactRegion {
     return is_free;
   }
 
-  /// Sets mean_ and free_ wherever a region of seeds may grow. The plane is that of the free pixels
-  /// (every fourth row and column) within three rings around all seeds. That it is level counts as
-  /// much as one pixel, which matters where few are free.
-  void find_curvatures(const detail::PixelBox& seeds) {
-    const auto grown = [&](Index rows, Index cols) {
-      return seeds.grown(rows, cols, image_.rows, image_.cols);
-    };
-    const auto part = grown(ring_rows_ + spread_rows_, ring_cols_ + spread_cols_);
-    curvature_.mean(part.first_row, part.last_row, part.first_col, part.last_col,
-                    image_.view(raw_.data()));
-    const auto reach = grown(ring_rows_, ring_cols_);
-    detail::mean_of_nine(image_.view(raw_.data()), spread_rows_, spread_cols_, reach,
-                         image_.view(mean_.data()));
-
-    const auto near = grown(3 * ring_rows_, 3 * ring_cols_);
+  /// The plane of the free membrane's curvature over the image, by least squares over the free
+  /// pixels (of every fourth row and column) within three rings around all seeds. That it is level
+  /// counts as much as one pixel, which matters where few are free.
+  void find_free_plane() {
+    const auto marks = regions_.marks();
+    Index top = image_.rows, bottom = 0, left = image_.cols, right = 0;  // of the seeds
+    for (Index i = 0; i < image_.rows; ++i) {
+      for (Index j = 0; j < image_.cols; ++j) {
+        if (marks(i, j) == detail::Mark::seed) {
+          top = (std::min)(top, i), bottom = i;
+          left = (std::min)(left, j), right = (std::max)(right, j);
+        }
+      }
+    }
+    top = (std::max)(top - 3 * ring_rows_, Index(0));
+    bottom = (std::min)(bottom + 3 * ring_rows_, image_.rows - 1);
+    left = (std::max)(left - 3 * ring_cols_, Index(0));
+    right = (std::min)(right + 3 * ring_cols_, image_.cols - 1);
     detail::ProductSums<double, 4> sums;  // of 1, row, column, curvature
-    sums.add({0, static_cast<double>(near.last_row - near.first_row), 0, 0});
-    sums.add({0, 0, static_cast<double>(near.last_col - near.first_col), 0});
-    for (Index i = near.first_row; i < near.last_row; i += 4) {
-      for (Index j = near.first_col; j < near.last_col; j += 4) {
-        if (is_free(regions_.marks(), i, j)) {
+    sums.add({0, static_cast<double>(bottom - top + 1), 0, 0});
+    sums.add({0, 0, static_cast<double>(right - left + 1), 0});
+    for (Index i = top; i <= bottom; i += 4) {
+      for (Index j = left; j <= right; j += 4) {
+        if (is_free(marks, i, j)) {
           sums.add({1, static_cast<double>(i), static_cast<double>(j),
                     static_cast<double>(statistic()(i, j))});
         }
       }
     }
     const detail::NormalEquations<double, 3> equations(sums.corner<3>());
-    const auto plane = equations.good ? equations.solve(sums.column<3>(3))
-                                      : std::array<double, 3>{2 * test_.threshold_per_mm, 0, 0};
+    free_ = equations.good ? equations.solve(sums.column<3>(3))
+                           : std::array<double, 3>{2 * test_.threshold_per_mm, 0, 0};
     double sum_sq = sums(3, 3);  // of the deviations from it
     for (std::size_t k = 0; k < 3; ++k) {
-      sum_sq -= plane[k] * sums(k, 3);
+      sum_sq -= free_[k] * sums(k, 3);
     }
     free_sd_per_mm_ = std::sqrt((std::max)(sum_sq, 0.0) / sums(0, 0));
-    for (Index i = reach.first_row; i < reach.last_row; ++i) {
-      const S first = S(plane[0] + plane[1] * static_cast<double>(i)), step = S(plane[2]);
-      S* to = image_.view(free_.data()).row(i);
-      for (Index j = reach.first_col; j < reach.last_col; ++j) {
-        to[j] = first + step * S(static_cast<double>(j));
-      }
-    }
+  }
+
+  /// The curvature of the free membrane at a pixel of the bordered image, 1/mm.
+  double free_per_mm(Index at) const {
+    const Index pixel = at - image_.at(0, 0);
+    return free_[0] + free_[1] * static_cast<double>(pixel / image_.stride()) +
+           free_[2] * static_cast<double>(pixel % image_.stride());
   }
 
   /// Of a round region of the same area.
@@ -304,7 +299,7 @@ class ContactRegion {
     for (Index k = region.begin; k < region.end; k += region.pixels() / most + 1) {
       const Index at = regions_.pixel(k), pixel = at - image_.at(0, 0);
       depth += static_cast<double>(depth_mm(pixel / image_.stride(), pixel % image_.stride()));
-      outside += static_cast<double>(free_[static_cast<std::size_t>(at)]);
+      outside += free_per_mm(at);
       samples_.push_back(mean_[static_cast<std::size_t>(at)]);
     }
     const double count = static_cast<double>(samples_.size());
@@ -322,8 +317,7 @@ class ContactRegion {
                                           patch_mm, static_cast<double>(spread_cols_) * pixel_mm)
                    : 0.0);
     const auto within = [&](Index at) {
-      const auto pixel = static_cast<std::size_t>(at);
-      return mean_[pixel] < inside + share * (free_[pixel] - inside);
+      return mean_[static_cast<std::size_t>(at)] < inside + share * (S(free_per_mm(at)) - inside);
     };
     regions_.grow(region, (std::max)(ring_rows_, ring_cols_), within);
     regions_.trim(region, within);
@@ -409,8 +403,9 @@ class ContactRegion {
   detail::BorderedImage image_;
   detail::Regions regions_;
   CurvatureMap<S> curvature_;
-  double free_sd_per_mm_ = 0;  // of the free membrane's curvature about its plane
-  std::vector<S> statistic_, raw_, mean_, free_;  // curvatures: clamped, plain, smoothed, plane
+  std::array<double, 3> free_ = {};  // plane of the free membrane's curvature: 1, row, column
+  double free_sd_per_mm_ = 0;        // of the curvature about it
+  std::vector<S> statistic_, raw_, mean_;  // curvatures: clamped, plain, smoothed
   detail::ReservedVector<S> samples_{2 * most};
   std::vector<Ray> rays_;
 };

@@ -32,6 +32,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
@@ -124,32 +125,38 @@ class RingSections {
     }
   }
 
-  /// Mean curvature of the complete sections through the pixels from cells[0] on, in 1/mm; NaN
-  /// where fewer than `least` are complete. `Clamped`: negative curvatures count as 0. `shrink` is
-  /// 1 / (1 + c l), see curvature.hpp.
-  template <bool Clamped, class V>
-  [[gnu::always_inline]] V mean(const S* cells, const V& shrink, int least) const {
+  template <class V>
+  struct Means {
+    V clamped;  ///< negative curvatures count as 0
+    V plain;    ///< only if asked for
+  };
+
+  /// Mean curvatures of the complete sections through the pixels from cells[0] on, in 1/mm; NaN
+  /// where fewer than `least` are complete. `shrink` is 1 / (1 + c l), see curvature.hpp.
+  template <bool Plain, class V>
+  [[gnu::always_inline]] Means<V> means(const S* cells, const V& shrink, int least) const {
     const V center = load_cells<V, S>(cells), shrink_sq = shrink * shrink;
     const V none = every_lane<V>(S(0)), one = every_lane<V>(S(1));
-    V total = none, complete = none;
+    V clamped = none, plain = none, complete = none;
     const Index* step = steps_.data();
     for (const Group& group : groups_) {
       const V radius_sq = shrink_sq * group.radius_sq;
-      V sum = none;
+      V clamped_sum = none, plain_sum = none;
       for (int k = 0; k < group.sections; ++k, ++step) {
         const V term = section<V>(radius_sq, load_cells<V, S>(cells - *step), center,
                                   load_cells<V, S>(cells + *step));
         complete = complete + V(known<V>(term) ? one : none);
-        if constexpr (Clamped) {
-          sum = sum + V(none < term ? term : none);
-        } else {
-          sum = sum + V(known<V>(term) ? term : none);
+        clamped_sum = clamped_sum + V(none < term ? term : none);
+        if constexpr (Plain) {
+          plain_sum = plain_sum + V(known<V>(term) ? term : none);
         }
       }
-      total = total + sum * group.twice_radius;
+      clamped = clamped + clamped_sum * group.twice_radius;
+      plain = plain + plain_sum * group.twice_radius;
     }
-    const V mean = total * (shrink_sq * shrink) / complete;
-    return complete < every_lane<V>(S(least)) ? every_lane<V>(not_a_number<S>()) : mean;
+    const V nan = every_lane<V>(not_a_number<S>());
+    const V scale = complete < every_lane<V>(S(least)) ? nan : V(shrink_sq * shrink / complete);
+    return {V(clamped * scale), V(plain * scale)};
   }
 
  private:
@@ -202,7 +209,8 @@ class CurvatureMap {
         rows_(rows),
         cols_(cols),
         least_((directions + 1) / 2),
-        segment_(static_cast<std::size_t>(columns), S(0)) {
+        clamped_(static_cast<std::size_t>(columns), S(0)),
+        plain_(clamped_) {
     const double aspect = static_cast<double>(value(camera.pixel_aspect));
     const double size_px =
         (std::max)(static_cast<double>(cols), aspect * static_cast<double>(rows));
@@ -219,40 +227,23 @@ class CurvatureMap {
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
 
-  /// Writes the mean of the curvatures in 1/mm, negative ones counted as 0, to `out`, which may be
-  /// the depth map itself, and returns the number of pixels that got NaN. By the slides, this mean
-  /// is below p / (2 sigma) (pressure p, membrane tension sigma) only in contact; it is 0 where the
-  /// object is convex or flat. Takes a depth map in mm. No number, and nothing written, for other
-  /// sizes.
+  /// Writes the mean of the curvatures in 1/mm, negative ones counted as 0, to `clamped`, which may
+  /// be the depth map itself, and returns the number of pixels that got NaN. By the slides, this
+  /// mean is below p / (2 sigma) (pressure p, membrane tension sigma) only in contact; it is 0 where
+  /// the object is convex or flat. Takes a depth map in mm. No number, and nothing written, for
+  /// other sizes.
   template <grid Depth, class Out>
-  [[nodiscard]] std::optional<Index> operator()(const Depth& depth_mm, Out&& out) {
-    static_assert(detail::takes_numbers<Out, S>,
-                  "this grid is written to: its cells must be assignable and able to hold NaN");
-    const auto from = as_view(depth_mm);
-    const auto to = as_view(out);
-    if (!has_size(from) || !has_size(to)) {
-      return {};
-    }
-    for (Index i = 0; i < rows_; ++i) {
-      load_row(from, i);
-    }
-    return write_means<true>(0, rows_, 0, cols_, to);
+  [[nodiscard]] std::optional<Index> operator()(const Depth& depth_mm, Out&& clamped) {
+    std::nullptr_t no_plain = nullptr;
+    return write_means(depth_mm, clamped, no_plain);
   }
 
-  /// Writes the plain mean of the last depth map, which locates the edge of contact, to rows
-  /// [first_row, last_row) and columns [first_col, last_col) of `out`, a grid of the same size.
-  /// False, and nothing written, for other sizes.
-  template <class Out>
-  bool mean(Index first_row, Index last_row, Index first_col, Index last_col, Out&& out) {
-    static_assert(detail::takes_numbers<Out, S>,
-                  "this grid is written to: its cells must be assignable and able to hold NaN");
-    const auto to = as_view(out);
-    if (!has_size(to) || first_row < 0 || last_row < first_row || last_row > rows_ ||
-        first_col < 0 || last_col < first_col || last_col > cols_) {
-      return false;
-    }
-    write_means<false>(first_row, last_row, first_col, last_col, to);
-    return true;
+  /// Also writes the plain mean, which locates the edge of contact.
+  template <grid Depth, class Clamped, class Plain>
+  [[nodiscard]] std::optional<Index> operator()(const Depth& depth_mm,
+                                                Clamped&& clamped,
+                                                Plain&& plain) {
+    return write_means(depth_mm, clamped, plain);
   }
 
  private:
@@ -275,8 +266,9 @@ class CurvatureMap {
 
   template <class G>
   bool has_size(const G& g) const {
-    return g.rows() == rows_ && g.cols() == cols_;
+    return fingerpad::rows(g) == rows_ && fingerpad::cols(g) == cols_;
   }
+  bool has_size(std::nullptr_t) const { return true; }
 
   S* cell(Index row, Index col) {
     return cells_.data() + (row + row_margin_) * stride_ + col_margin_ + col;
@@ -302,35 +294,51 @@ class CurvatureMap {
     });
   }
 
-  /// Writes means and returns how many pixels are unknown (of whole rows).
-  template <bool Clamped, class View>
-  Index write_means(
-      Index first_row, Index last_row, Index first_col, Index last_col, const View& to) {
+  template <class Depth, class Clamped, class Plain>
+  std::optional<Index> write_means(const Depth& depth_mm, Clamped& clamped, Plain& plain) {
+    constexpr bool has_plain = !std::is_null_pointer_v<Plain>;
+    static_assert(detail::takes_numbers<Clamped, S> &&
+                      (detail::takes_numbers<Plain, S> || std::is_null_pointer_v<Plain>),
+                  "this grid is written to: its cells must be assignable and able to hold NaN");
+    if (!has_size(depth_mm) || !has_size(clamped) || !has_size(plain)) {
+      return {};
+    }
+    const auto from = as_view(depth_mm);
+    for (Index i = 0; i < rows_; ++i) {
+      load_row(from, i);
+    }
     Index known = 0;
-    for (Index j = first_col; j < last_col; j += columns) {
-      const Index count = (std::min)(columns, last_col - j);
-      for (Index i = first_row; i < last_row; ++i) {
-        known += compute_segment<Clamped>(cell(i, j), count);
-        store_segment(to, i, j, count);
+    for (Index j = 0; j < cols_; j += columns) {
+      const Index count = (std::min)(columns, cols_ - j);
+      for (Index i = 0; i < rows_; ++i) {
+        known += compute_segment<has_plain>(cell(i, j), count);
+        store_segment(clamped_.data(), as_view(clamped), i, j, count);
+        if constexpr (has_plain) {
+          store_segment(plain_.data(), as_view(plain), i, j, count);
+        }
       }
     }
-    return (last_row - first_row) * (last_col - first_col) - known;
+    return rows_ * cols_ - known;
   }
 
   /// Computes `count` means from cells[0] on, rounded up to whole vectors, and returns how many of
   /// them are known. Beyond the image none is.
-  template <bool Clamped>
+  template <bool Plain>
   [[gnu::noinline]] Index compute_segment(const S* cells, Index count) {
     const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
+    const V nan = detail::every_lane<V>(not_a_number<S>());
     V known = none;
     for (Index j = 0; j < count; j += n) {
       const V zeta = detail::load_cells<V, S>(cells + j);
-      V mean = detail::every_lane<V>(not_a_number<S>());
+      typename detail::RingSections<S>::template Means<V> mean = {nan, nan};
       if (detail::any_lane(detail::known<V>(zeta))) {
-        mean = sections_.template mean<Clamped, V>(cells + j, V(1 - growth_ * zeta), least_);
+        mean = sections_.template means<Plain, V>(cells + j, V(1 - growth_ * zeta), least_);
       }
-      known = known + V(detail::known<V>(mean) ? one : none);
-      detail::store_cells<S>(segment_.data() + j, mean);
+      known = known + V(detail::known<V>(mean.clamped) ? one : none);
+      detail::store_cells<S>(clamped_.data() + j, mean.clamped);
+      if constexpr (Plain) {
+        detail::store_cells<S>(plain_.data() + j, mean.plain);
+      }
     }
     std::array<S, static_cast<std::size_t>(n)> of_lane;
     detail::store_cells<S>(of_lane.data(), known);
@@ -342,15 +350,16 @@ class CurvatureMap {
   }
 
   template <class View>
-  void store_segment(const View& to, Index row, Index first_col, Index count) const {
+  static void store_segment(
+      const S* from, const View& to, Index row, Index first_col, Index count) {
     if constexpr (detail::plain_rows<View, S>) {
       if (to.col_stride() == 1) {
-        std::copy_n(segment_.data(), count, to.row(row) + first_col);
+        std::copy_n(from, count, to.row(row) + first_col);
         return;
       }
     }
     for (Index j = 0; j < count; ++j) {
-      to(row, first_col + j) = static_cast<cell_t<View>>(segment_[static_cast<std::size_t>(j)]);
+      to(row, first_col + j) = static_cast<cell_t<View>>(from[j]);
     }
   }
 
@@ -361,7 +370,7 @@ class CurvatureMap {
   Index row_margin_ = 0, col_margin_ = 0, stride_ = 0;
   detail::RingSections<S> sections_;
   std::vector<S> cells_;  // zeta, with a margin of NaN on every side
-  std::vector<S> segment_;
+  std::vector<S> clamped_, plain_;  // of a segment
 };
 
 }  // namespace v0

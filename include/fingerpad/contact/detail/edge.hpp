@@ -68,21 +68,6 @@ S share_at_end(const S& jump_per_mm,
   return value(round) < 1 ? round : S(1);
 }
 
-/// Rows and columns [first, last).
-struct PixelBox {
-  Index first_row, last_row, first_col, last_col;
-
-  /// Includes the columns [first, last) of a row below all others.
-  void include(Index row, Index first, Index last) {
-    *this = {(std::min)(first_row, row), row + 1, (std::min)(first_col, first),
-             (std::max)(last_col, last)};
-  }
-  PixelBox grown(Index by_rows, Index by_cols, Index rows, Index cols) const {
-    return {(std::max)(first_row - by_rows, Index(0)), (std::min)(last_row + by_rows, rows),
-            (std::max)(first_col - by_cols, Index(0)), (std::min)(last_col + by_cols, cols)};
-  }
-};
-
 /// Mean of three values; the middle one if another is missing (NaN).
 template <class V, class S>
 [[gnu::always_inline]] inline V mean_of_three(const V& before, const V& middle, const V& after) {
@@ -90,20 +75,16 @@ template <class V, class S>
   return sum == sum ? V(sum * S(1.0 / 3)) : middle;
 }
 
-/// Writes the mean of nine pixels (3 x 3), `rows` and `cols` apart, to a part of `out`: if the
-/// map's noise is smooth over this distance, nearly as good as the mean over the whole window and
-/// several times cheaper. The map has a border as wide, of NaN.
+/// Writes the mean of nine pixels (3 x 3), `rows` and `cols` apart: if the map's noise is smooth
+/// over this distance, nearly as good as the mean over the whole window and several times cheaper.
+/// The map has a border as wide, of NaN.
 template <class S>
-void mean_of_nine(const StridedView<S>& map,
-                  Index rows,
-                  Index cols,
-                  const PixelBox& part,
-                  const StridedView<S>& out) {
-  for (Index i = part.first_row; i < part.last_row; ++i) {
-    const S* from = map.row(i) + part.first_col;
-    const Index down = rows * map.row_stride();
-    S* to = out.row(i) + part.first_col;
-    for_each_cell<S>(part.last_col - part.first_col, [=]<class V>(Index j) {
+void mean_of_nine(const StridedView<S>& map, Index rows, Index cols, const StridedView<S>& out) {
+  const Index down = rows * map.row_stride();
+  for (Index i = 0; i < map.rows(); ++i) {
+    const S* from = map.row(i);
+    S* to = out.row(i);
+    for_each_cell<S>(map.cols(), [=]<class V>(Index j) {
       const auto along = [=](const S* row) {
         return mean_of_three<V, S>(load_cells<V, S>(row - cols), load_cells<V, S>(row),
                                    load_cells<V, S>(row + cols));

@@ -71,6 +71,12 @@ class Regions {
   Mark& mark(Index at) { return mark_[static_cast<std::size_t>(at)]; }
   StridedView<Mark> marks() { return image_.view(mark_.data()); }
 
+  /// The first seed from a pixel on; image().size() if there is none.
+  Index next_seed(Index from) const {
+    const Mark* marks = mark_.data();
+    return find_mark(marks + from, marks + image_.size(), Mark::seed) - marks;
+  }
+
   /// A region: the pixels queue[begin, end).
   struct Region {
     Index begin = 0;
@@ -128,11 +134,6 @@ class Regions {
   }
 
  private:
-  Index next_seed(Index from) const {
-    const Mark* marks = mark_.data();
-    return find_mark(marks + from, marks + image_.size(), Mark::seed) - marks;
-  }
-
   void push(Index at) {
     mark(at) = Mark::contact;
     queue_[static_cast<std::size_t>(tail_)] = at;
