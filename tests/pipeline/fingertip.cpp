@@ -369,6 +369,135 @@ TEST_CASE("what the options lack has no answer, and the rest is the same", "[cha
   tip.reset();
 }
 
+namespace {
+
+/// A pad that a plate drags, with discs of 5 px printed on it.
+struct PrintedFrames {
+  static constexpr int count = 24;
+  PressedFrames pad{240, 320, 0};
+
+  PressedFrame operator[](int k) const {
+    PressedFrame f = pad.frame(k, count);
+    for (auto* channel : {&f.image.red, &f.image.green}) {  // of the pad's own dark squares, none
+      for (Index i = 0; i < channel->rows(); i += 7) {
+        for (Index j = 0; j < channel->cols(); ++j) {
+          const bool is_last = i + 2 >= channel->rows();
+          (*channel)(i, j) = (*channel)(is_last ? i - 1 : i + 2, j);
+          (*channel)((std::min)(i + 1, channel->rows() - 1), j) = (*channel)(i, j);
+        }
+      }
+    }
+    for (const Point2<double>& dot : f.dots_px.cells) {
+      if (!is_finite(dot)) {
+        continue;
+      }
+      const auto x0 = static_cast<Index>(dot.x), y0 = static_cast<Index>(dot.y);
+      for (Index i = y0 - 5; i <= y0 + 6; ++i) {
+        for (Index j = x0 - 5; j <= x0 + 6; ++j) {
+          const double r =
+              std::hypot(static_cast<double>(j) - dot.x, static_cast<double>(i) - dot.y);
+          const double ink = 0.3 * std::clamp((3.5 - r) / 2, 0.0, 1.0);
+          for (auto* channel : {&f.image.red, &f.image.green}) {
+            std::uint8_t& cell = (*channel)(i, j);
+            cell = static_cast<std::uint8_t>(std::lround((1 - ink) * static_cast<double>(cell)));
+          }
+        }
+      }
+    }
+    return f;
+  }
+  FingertipOptions options(const PressedFrame& first) const {
+    FingertipOptions o = in_samples(pad.options(), 2);
+    o.dot_follower.emplace(fingerpad::mean_light(first.image.red, first.image.green), first.dots_px,
+                           fingerpad::DotFollowerOptions{.radius_px = 2.5});
+    return o;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a fingertip with a follower needs no dots, and says what one with dots says",
+          "[chain]") {
+  const PrintedFrames printed;
+  const PressedFrame first = printed[0];
+  const FingertipOptions options = printed.options(first);
+  FingertipOptions without = options;
+  without.dot_follower.reset();
+  Fingertip tip(options), told(without);
+  for (int k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    const PressedFrame f = printed[k];
+    const auto touch = tip(f.image.red, f.image.green, pressure_mpa, 0.1 * k);
+    const auto expected = told(f.image.red, f.image.green, f.dots_px, pressure_mpa, 0.1 * k);
+    REQUIRE(touch.dots.ok());
+    CHECK(touch.dots.found == touch.dots.expected);
+    CHECK_FALSE(expected.dots.ok());
+    for (Index i = 0; i < f.dots_px.rows(); ++i) {
+      for (Index j = 0; j < f.dots_px.cols(); ++j) {
+        const auto& found = tip.dots_px()(i, j);
+        CHECK((!is_finite(found) || norm(found - f.dots_px(i, j)) < 0.3));
+      }
+    }
+    CHECK(touch.stick.status == expected.stick.status);
+    REQUIRE(touch.motion.has_pose());
+    CHECK(touch.motion.angles.z_rad == Approx(expected.motion.angles.z_rad).margin(0.002));
+    CHECK(touch.motion.position_mm.x == Approx(expected.motion.position_mm.x).margin(0.02));
+    CHECK(test::same_bits(touch.contact.area_mm2, expected.contact.area_mm2));
+  }
+  CHECK(told.dots_px().rows() == 0);
+}
+
+TEST_CASE("a follower that has lost the dots restarts at those that are given", "[chain]") {
+  const PrintedFrames printed;
+  const PressedFrame first = printed[0], other = printed[12], next = printed[13];
+  Fingertip tip(printed.options(first));
+  const auto status = [&](const PressedFrame& f) {
+    return tip(f.image.red, f.image.green, pressure_mpa).dots.status;
+  };
+  using fingerpad::DotFollowerStatus;
+  REQUIRE(status(first) == DotFollowerStatus::ok);
+  const test::Image<std::uint8_t> black(240, 320, 0);
+  CHECK(tip(black, black, pressure_mpa).dots.status == DotFollowerStatus::lost);
+  CHECK(fingerpad::count_present(tip.dots_px()) == 0);
+  // the print has jumped by 1 mm, two thirds of its pitch
+  CHECK(tip(other.image.red, other.image.green, other.dots_px, pressure_mpa).dots.ok());
+  CHECK(norm(tip.dots_px()(10, 10) - other.dots_px(10, 10)) < 0.3);
+  CHECK(status(next) == DotFollowerStatus::ok);
+  // where there are none, those given hold
+  const auto blind = tip(black, black, next.dots_px, pressure_mpa);
+  CHECK(blind.dots.status == DotFollowerStatus::lost);
+  CHECK(tip.dots_px()(10, 10).x == next.dots_px(10, 10).x);
+  CHECK(tip(first.image.red, first.image.green, test::Image<Point2<double>>(3, 3)).status ==
+        fingerpad::FingertipStatus::refused);
+  CHECK(fingerpad::name_of(DotFollowerStatus::lost) == std::string("lost"));
+}
+
+TEST_CASE("a follower of another frame or print is refused, and a frame with one allocates nothing",
+          "[chain]") {
+  const PrintedFrames printed;
+  const PressedFrame first = printed[0], next = printed[1];
+  const FingertipOptions options = printed.options(first);
+  Fingertip tip(options);
+  Fingertip copy = tip;
+  const long before = test::allocations();
+  const auto touch = tip(next.image.red, next.image.green, pressure_mpa);
+  const auto again = copy(next.image.red, next.image.green, pressure_mpa);
+  CHECK(test::allocations() == before);
+  CHECK(touch.dots.ok());
+  CHECK(test::same_bits(touch.motion.position_mm.x, again.motion.position_mm.x));
+
+  FingertipOptions bad = options;
+  bad.free_dots_mm = {};
+  CHECK(test::refusal([&] { Fingertip refused(bad); }) ==
+        "FingertipOptions: rows of dot_follower = 21, must be the size of free_dots_mm");
+  bad = options;
+  bad.dot_follower.emplace(
+      fingerpad::LazyView(239, 320, [&](Index i, Index j) { return first.image.green(i, j); }),
+      first.dots_px, fingerpad::DotFollowerOptions{.radius_px = 2.5});
+  CHECK(test::refusal([&] { Fingertip refused(bad); }) ==
+        "FingertipOptions: image_rows of dot_follower = 239, must be the size of the frame");
+}
+
 TEST_CASE("a free apex that is not that of the reference is refused", "[chain]") {
   auto options = frames().options();
   const double apex_mm = options.contact.free_apex_mm;

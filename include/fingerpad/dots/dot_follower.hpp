@@ -32,7 +32,20 @@ enum class DotFollowerStatus : std::uint8_t {
   lost,     ///< too many dots were lost to trust the others: all are NaN
   refused,  ///< image or grid of another size, or no dots to follow: nothing was written
 };
-inline constexpr std::array<const char*, 3> dot_follower_status_names = {"ok", "lost", "refused"};
+/// "ok", "lost" or "refused".
+constexpr const char* name_of(DotFollowerStatus status) {
+  constexpr std::array<const char*, 3> names = {"ok", "lost", "refused"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+/// The mean of two channels of a frame, as a grid of float: green and red of a red fluid scatter a
+/// dot less than either alone. Valid as long as both channels are.
+template <grid A, grid B>
+auto mean_light(const A& a, const B& b) {
+  return LazyView(rows(a), cols(a), [a = as_view(a), b = as_view(b)](Index i, Index j) {
+    return 0.5F * (static_cast<float>(a(i, j)) + static_cast<float>(b(i, j)));
+  });
+}
 
 struct DotFollowerOptions {
   double radius_px = 4;   ///< of a dot on the free pad, right to within a third; in [1, 16]
@@ -106,6 +119,8 @@ class DotFollower {
 
   Index rows() const { return rows_; }
   Index cols() const { return cols_; }
+  Index image_rows() const { return image_rows_; }
+  Index image_cols() const { return image_cols_; }
   /// Standard deviation of each dot's place along x and along y, px, from its own residual as if
   /// the noise of neighbouring pixels were independent (JPEG: up to twice that); NaN if lost.
   StridedView<const double> sd_px() const { return {sd_px_.data(), rows_, cols_, cols_}; }

@@ -7,6 +7,7 @@
 //
 //   Fingertip fingertip(options);                    // takes all memory, refuses bad parameters
 //   auto touch = fingertip(red, green, dots_px, pressure_mpa, time_s);
+//   auto touch = fingertip(red, green, pressure_mpa, time_s);  // with a dot follower
 //   if (touch.ok()) { ... touch.wrench.force_n ... }
 #include <cmath>
 #include <cstdint>
@@ -52,6 +53,9 @@ class Fingertip {
     if (o.free_dots_mm.rows() * o.free_dots_mm.cols() > 0) {
       dots_.emplace(o);
     }
+    if (o.dot_follower) {
+      follow_.emplace(*o.dot_follower, o.free_dots_mm, rows(), cols());
+    }
     if (o.force_of_area || o.force_of_depth || o.shear) {
       look_up_ =
           detail::FingertipLookUp{o.force_of_area, o.force_of_depth, o.shear, o.shear_by_depth};
@@ -67,7 +71,8 @@ class Fingertip {
   /// Processes one frame: red and green of 8 or 16 bit, the printed dots in px (NaN: not found),
   /// MPa above the surrounding air, and the time in s of the stick ratio; NaN: not known. Of the
   /// side dots, in the same order in each frame, place and sd in px are read (NaN: not found). What
-  /// no stage takes may be left out.
+  /// no stage takes may be left out. With a follower, printed dots are left out, too: those given
+  /// are where it restarts, and count as they are where it finds too few.
   template <grid Red, grid Green, dot_grid DotsPx = StridedView<const Point2<double>>>
   FingertipResult operator()(const Red& red,
                              const Green& green,
@@ -75,35 +80,39 @@ class Fingertip {
                              double pressure_mpa = not_a_number<double>(),
                              double time_s = not_a_number<double>(),
                              std::span<const Mark> side_dots = {}) {
-    FingertipResult touch;
-    const auto dots = as_view(dots_px);
-    if (!take_samples(as_view(red), as_view(green)) ||
-        (dots_ && !same_size(dots, dots_->seen.view()))) {
-      return touch;
+    const auto given = as_view(dots_px);
+    const bool is_given = !dots_ || same_size(given, dots_->seen.view());
+    const bool is_followed = follow_ && given.rows() == 0;
+    if (!(is_given || is_followed) || !take_samples(as_view(red), as_view(green))) {
+      return {};
     }
-    if (dots_) {
-      dots_->read(dots, pad_->step);
+    if (!follow_) {
+      return measure(given, pressure_mpa, time_s, side_dots);
     }
-    measure_shape(touch);
-    if (dots_) {
-      dots_->follow(camera_, depth_mm_.view(), mask_.view(), time_s, touch);
-    }
-    if (look_up_ && touch.contact.ok()) {
-      (*look_up_)(touch);
-    }
-    if (wrench_) {
-      wrench_->read(dots, dots_in_contact(), side_dots, std::as_const(mask_).view(), pad_->step);
-      measure_wrench(pressure_mpa, touch);
-    }
-    if (dots_) {
-      dots_->conclude(touch);
-    }
-    touch.status = judge(touch, pressure_mpa);
+    const DotFollowerResult seen = (*follow_)(mean_light(red, green), given);
+    FingertipResult touch =
+        measure(std::as_const(follow_->px).view(), pressure_mpa, time_s, side_dots);
+    touch.dots = seen;
     return touch;
+  }
+  /// The same with a follower.
+  template <grid Red, grid Green>
+  FingertipResult operator()(const Red& red,
+                             const Green& green,
+                             double pressure_mpa,
+                             double time_s = not_a_number<double>(),
+                             std::span<const Mark> side_dots = {}) {
+    return (*this)(red, green, StridedView<const Point2<double>>(), pressure_mpa, time_s,
+                   side_dots);
   }
 
   Index rows() const { return pad_->pixels.rows; }
   Index cols() const { return pad_->pixels.cols; }
+  /// The printed dots that the follower found in the last frame, in px; NaN: lost. Empty without a
+  /// follower.
+  StridedView<const Point2<double>> dots_px() const {
+    return follow_ ? follow_->px.view() : StridedView<const Point2<double>>();
+  }
   /// Depth of every pixel of the last frame, in mm; NaN where there is none. The cells of the views
   /// are computed from the samples when they are read.
   auto depth_mm() const {
@@ -159,6 +168,34 @@ class Fingertip {
                          detail::crop(red_.view(), to), detail::crop(green_.view(), to));
     }
     return true;
+  }
+
+  /// Of the samples and the printed dots in px.
+  template <class Dots>
+  FingertipResult measure(const Dots& dots,
+                          double pressure_mpa,
+                          double time_s,
+                          std::span<const Mark> side_dots) {
+    FingertipResult touch;
+    if (dots_) {
+      dots_->read(dots, pad_->step);
+    }
+    measure_shape(touch);
+    if (dots_) {
+      dots_->follow(camera_, depth_mm_.view(), mask_.view(), time_s, touch);
+    }
+    if (look_up_ && touch.contact.ok()) {
+      (*look_up_)(touch);
+    }
+    if (wrench_) {
+      wrench_->read(dots, dots_in_contact(), side_dots, std::as_const(mask_).view(), pad_->step);
+      measure_wrench(pressure_mpa, touch);
+    }
+    if (dots_) {
+      dots_->conclude(touch);
+    }
+    touch.status = judge(touch, pressure_mpa);
+    return touch;
   }
 
   void measure_shape(FingertipResult& touch) {
@@ -229,6 +266,7 @@ class Fingertip {
   std::optional<NeighbourLightCompensation<>> take_off_light_;
   std::optional<ContactRegion<>> find_contact_;
   std::optional<EquivalentFlatArea<>> find_flat_area_;
+  std::optional<detail::FollowedDots> follow_;
   std::optional<detail::FingertipDots> dots_;
   std::optional<detail::FingertipLookUp> look_up_;
   std::optional<detail::FingertipWrench> wrench_;

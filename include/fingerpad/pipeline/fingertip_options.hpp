@@ -12,6 +12,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"
+#include "fingerpad/dots/dot_follower.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/force/wrench.hpp"
@@ -41,6 +42,9 @@ struct FingertipOptions {
 
   /// Printed dots of the free pad; NaN: missing; empty: no answer from dots.
   StridedView<const Point3<double>> free_dots_mm = {};
+  /// Finds these dots in the mean_light() of red and green, on which it must be made; empty: they
+  /// come with each frame.
+  std::optional<DotFollower> dot_follower = {};
   double dot_radius_px = 0;  ///< a dot touches if its whole disc does; see contact_at_dots()
   StickOptions stick = {};   ///< noise of the dots in mm, and what counts as slip
   double dot_depth_noise_mm = 0.025;  ///< standard deviation of a dot's depth, for the motion
@@ -89,6 +93,7 @@ struct [[nodiscard]] FingertipResult {
   bool lacks_look_up = false;  ///< no normal force by look-up
   bool lacks_wrench = false;   ///< no six axes
 
+  DotFollowerResult dots;  ///< of the follower; refused without one
   DepthResult depth;
   FrameStatus neighbour_light = FrameStatus::ok;  ///< of its removal
   ContactResult contact;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Grids of samples, the depth of a pixel between them, and the stages of pipeline/fingertip.hpp that
-// consist of several methods.
+// Grids of samples, the depth of a pixel between them, and the stages of pipeline/fingertip.hpp
+// that consist of several methods.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -75,7 +75,7 @@ S pixel_depth(const SampledPad<S>& free,
       (own != PixelStatus::ok && own != PixelStatus::outside_pad)) {
     return not_a_number<S>();
   }
-  struct Place {
+  struct Between {
     Index sample;  // the one before
     S behind;      // of it, in samples
     Index next;    // 0: a single sample is everywhere
@@ -84,10 +84,10 @@ S pixel_depth(const SampledPad<S>& free,
     const double at = sampled_px(static_cast<double>(px), free.step);
     const double last = static_cast<double>(count - 2);
     const double before = (std::max)(0.0, (std::min)(std::floor(at), last));
-    return Place{static_cast<Index>(before), S(at - before), count > 1 ? 1 : 0};
+    return Between{static_cast<Index>(before), S(at - before), count > 1 ? 1 : 0};
   };
   const auto moved = [&](Index i, Index j) { return samples_mm(i, j) - free.samples.depth(i, j); };
-  const Place down = place(row, samples_mm.rows()), right = place(col, samples_mm.cols());
+  const Between down = place(row, samples_mm.rows()), right = place(col, samples_mm.cols());
   for (const Index di : {0, -1, 1}) {
     for (const Index dj : {0, -1, 1}) {
       const Index i = down.sample + di, j = right.sample + dj;
@@ -107,6 +107,51 @@ S pixel_depth(const SampledPad<S>& free,
   }
   return not_a_number<S>();
 }
+
+/// The printed dots of each frame, found in its light.
+struct FollowedDots {
+  DotFollower follower;
+  OwnedGrid<Point2<double>> px;
+
+  FollowedDots(const DotFollower& from,
+               const StridedView<const Point3<double>>& free_dots_mm,
+               Index frame_rows,
+               Index frame_cols)
+      : follower(from), px(free_dots_mm.rows(), free_dots_mm.cols()) {
+    expects(same_size(from.sd_px(), free_dots_mm), "FingertipOptions", "rows of dot_follower",
+            static_cast<long long>(from.rows()), "the size of free_dots_mm");
+    expects(from.image_rows() == frame_rows && from.image_cols() == frame_cols, "FingertipOptions",
+            "image_rows of dot_follower", static_cast<long long>(from.image_rows()),
+            "the size of the frame");
+  }
+
+  /// `given` is empty, or where the dots are looked for, which holds where too few are found.
+  template <class Light, class Dots>
+  DotFollowerResult operator()(const Light& light, const Dots& given) {
+    auto found = px.view();
+    if (given.rows() == 0) {
+      return follower(light, found);
+    }
+    copy(given);
+    const DotFollowerResult seen = follower.restart(light, found);
+    if (!seen.ok()) {
+      copy(given);
+    }
+    return seen;
+  }
+
+ private:
+  template <class Dots>
+  void copy(const Dots& dots) {
+    using Traits = point_traits<cell_t<Dots>>;
+    for (Index i = 0; i < px.rows; ++i) {
+      for (Index j = 0; j < px.cols; ++j) {
+        const cell_t<Dots> p = dots(i, j);
+        px.view()(i, j) = {static_cast<double>(Traits::x(p)), static_cast<double>(Traits::y(p))};
+      }
+    }
+  }
+};
 
 /// Slip and motion from the printed dots: all that a fingertip remembers from frame to frame.
 struct FingertipDots {
