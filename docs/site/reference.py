@@ -11,7 +11,8 @@ from pathlib import Path
 
 ROOMS = {  # in the order in which a frame goes through them
     "pipeline": "Whole sensors", "depth": "Depth", "contact": "Contact", "dots": "Dots",
-    "motion": "Motion", "slip": "Slip", "gel": "Gels", "force": "Force", "foam": "Foam",
+    "motion": "Motion", "slip": "Slip", "gel": "Gels", "force": "Force", "membrane": "Membrane",
+    "foam": "Foam",
     "calibrate": "Calibration", "published": "As published", "optics": "Optics", "sim": "Test signals", "adapt": "Adapters",
     "image": "Pixel kernels", "math": "Mathematics", "core": "Vocabulary",
 }

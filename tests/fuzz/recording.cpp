@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // What replay reads but videos, with any bytes in it: each file is read, or refused by one line.
-// with: examples/programs/common/sensor.cpp examples/programs/common/number_table.cpp
+// with: examples/programs/common/sensor.cpp examples/programs/common/table.cpp
 // with: examples/programs/common/signals.cpp examples/programs/common/images.cpp
 // with: examples/programs/common/stress_free_dots.cpp examples/programs/common/true_forces.cpp
 // with: examples/programs/replay/dots/file.cpp

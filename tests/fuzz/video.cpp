@@ -4,7 +4,7 @@
 // crash; this process may not.
 // with: examples/programs/common/recording.cpp examples/programs/common/video.cpp
 // with: examples/programs/common/capture.cpp examples/programs/replay/live/frames.cpp
-// with: examples/programs/common/sensor.cpp examples/programs/common/number_table.cpp
+// with: examples/programs/common/sensor.cpp examples/programs/common/table.cpp
 // with: examples/programs/common/signals.cpp examples/programs/common/images.cpp
 // with: examples/programs/common/stress_free_dots.cpp examples/programs/common/true_forces.cpp
 // with: -lopencv_core -lopencv_imgproc -lopencv_imgcodecs -lopencv_videoio

@@ -688,7 +688,7 @@ TEST_CASE("a table that is none of taxels is refused with the column's name") {
       Fault{"frame,time_s,,r0_c0\n0,0,,1\n", "unknown column ''"},
       Fault{"frame;time_s;r0_c0\n0;0;1\n", "line 1: the values are separated by ';'"},
       Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,2,3\n",
-            "line 3: has 4 values, but the header has only 3"},
+            "line 3: has 4 values, must have 3 (decimals must be"},
       Fault{"frame,time_s,r0_c0\n0,0,1\n1,1,two\n", "line 3: r0_c0 'two' is not a number"},
       Fault{"frame,time_s,r0_c0\n0,soon,1\n", "line 2: time_s 'soon' is not a number"},
       Fault{"frame,time_s,r0_c0\n-1,0,1\n", "line 2: frame '-1' is not a whole number >= 0"},

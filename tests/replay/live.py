@@ -52,11 +52,20 @@ def run(replay, recording, work):
     assert refused.returncode == 1 and "there is no screen" in refused.stderr, refused
 
     out = work / "out"
-    once = ["--frames", f":{len(frames)}", "--headless", "--out", out]
+    once = ["--frames", f":{len(frames)}", "--headless", "--out", out, "--record", work / "taken"]
     subprocess.run(command + once, check=True)
     written = [np.array(Image.open(f)) for f in sorted((out / "pictures").iterdir())]
     assert len(written) == len(frames)
     assert len((out / "frames.csv").read_text().splitlines()) == len(frames) + 1
+
+    # What was recorded holds the frames as they came, and replay reads it.
+    taken = sorted((work / "taken" / "001" / "frames").iterdir())
+    assert [p.name for p in (work / "taken").iterdir()] == ["001"] and len(taken) == len(frames)
+    for got, given in zip(taken, sorted((recording / "frames").iterdir())):
+        assert (np.array(Image.open(got)) == np.array(Image.open(given))).all(), got
+    subprocess.run([replay, taken[0].parent.parent, "--sensor", recording / "sensor.json", "--no-pictures",
+                    "--out", work / "again"], check=True, stdout=subprocess.DEVNULL)
+    assert len((work / "again" / "frames.csv").read_text().splitlines()) == len(frames) + 1
 
     ready, told = os.pipe()
     xvfb = subprocess.Popen(

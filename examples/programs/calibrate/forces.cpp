@@ -3,8 +3,6 @@
 // Calibrates the membrane, and the curves for forces by look-up.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
@@ -13,9 +11,9 @@
 #include <vector>
 
 #include "calibrate/calibrations.hpp"
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
 #include "common/signals.hpp"
+#include "common/table.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -33,35 +31,36 @@ using NormalFit = fingerpad::NormalForceFit<>;
 /// A table accessed by column names; NaN for an empty cell or a missing column.
 class Columns {
  public:
-  explicit Columns(const Path& file) {
-    std::ifstream stream(file);
-    std::string line;
-    if (!std::getline(stream, line)) {
-      replay::fail(file, "is empty or cannot be read");
-    }
-    names_ = replay::cells_of(line);
-    while (std::getline(stream, line)) {
-      rows_.push_back(replay::cells_of(line));
+  explicit Columns(const Path& file) : file_(file) {
+    replay::Table table(file, replay::Table::Lines::may_end_early);
+    for (names_ = table.header(); table.next();) {
+      rows_.push_back(table.cells());
+      lines_.push_back(table.line());
     }
   }
 
   std::size_t rows() const { return rows_.size(); }
   bool has(const std::string& name) const { return column(name) < names_.size(); }
   std::string text(std::size_t row, const std::string& name) const {
-    const std::size_t k = column(name);
-    return k < rows_[row].size() ? rows_[row][k] : "";
+    return has(name) ? rows_[row][column(name)] : "";
   }
   double number(std::size_t row, const std::string& name) const {
-    const std::string cell = text(row, name);
-    return cell.empty() ? none : std::strtod(cell.c_str(), nullptr);
+    double value = none;
+    if (!replay::read_number(text(row, name), value)) {
+      replay::fail(file_, "line " + std::to_string(lines_[row]) + ": " + name + " '" +
+                              text(row, name) + "' is not a number");
+    }
+    return value;
   }
 
  private:
   std::size_t column(const std::string& name) const {
     return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
   }
+  Path file_;
   std::vector<std::string> names_;
   std::vector<std::vector<std::string>> rows_;
+  std::vector<int> lines_;
 };
 
 /// A measure of the contact's size, by which forces are looked up.

@@ -9,8 +9,8 @@
 #include "common/failure.hpp"
 #include "common/images.hpp"
 #include "common/json_section.hpp"
-#include "common/number_table.hpp"
 #include "common/recording.hpp"
+#include "common/table.hpp"
 
 namespace calibrate {
 namespace {
@@ -119,13 +119,13 @@ std::vector<DepthMap> true_depths(const fs::path& recording,
     }
     return depths;
   }
-  const replay::NumberTable table(recording / "presses.csv",
-                                  {"frame", "x_mm", "y_mm", "z_mm", "radius_mm"});
-  for (const auto& line : table.lines()) {
-    const int frame = table.index(line, 0, static_cast<int>(frames), "frames");
-    const double x = line.values[1], y = line.values[2], z = line.values[3], r = line.values[4];
+  replay::Table table(recording / "presses.csv", {"frame", "x_mm", "y_mm", "z_mm", "radius_mm"});
+  while (table.next()) {
+    const int frame = table.index(0, static_cast<int>(frames), "frames");
+    const double x = table.number(1), y = table.number(2), z = table.number(3);
+    const double r = table.number(4);
     if (!(r > 0) || !(z > 0)) {
-      table.refuse(line, "radius_mm and z_mm of the ball must be > 0");
+      table.refuse("radius_mm and z_mm of the ball must be > 0");
     }
     depths[static_cast<std::size_t>(frame)] = depth_on_ball(sensor, {{x, y, z + r}, r}, free_mm);
   }

@@ -4,12 +4,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
 #include "common/failure.hpp"
 #include "common/json_section.hpp"
 #include "common/sensor.hpp"
+#include "common/whole_files.hpp"
 
 namespace calibrate {
 namespace {
@@ -21,23 +20,6 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json();
-}
-
-void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path growing = file.string() + ".new";
-  {
-    std::ofstream stream(growing);
-    stream << text;
-    stream.close();
-    if (!stream) {
-      replay::fail(growing, "cannot be written");
-    }
-  }
-  std::error_code error;
-  fs::rename(growing, file, error);
-  if (error) {
-    replay::fail(file, "cannot be replaced: " + error.message());
-  }
 }
 
 /// The number in `entry`; null stands for an unknown value.
@@ -139,7 +121,7 @@ void save(const Outcome& outcome, const fs::path& file) {
   for (const Report& report : outcome.reports) {
     content["calibration"][report.what] = to_json(report);
   }
-  write_whole(file, content.dump(2) + "\n");
+  replay::write_file(file, content.dump(2) + "\n");
 }
 
 std::vector<Report> load_reports(const fs::path& file) {
@@ -162,7 +144,7 @@ void write_plot(const Plot& plot, const fs::path& file) {
     std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g\n", p.x, p.measured, p.fitted);
     text += line;
   }
-  write_whole(file, text);
+  replay::write_file(file, text);
 }
 
 }  // namespace calibrate

@@ -16,8 +16,8 @@
 #include "calibrate/calibrations.hpp"
 #include "common/failure.hpp"
 #include "common/images.hpp"
-#include "common/number_table.hpp"
 #include "common/recording.hpp"
+#include "common/table.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 
 namespace calibrate {
@@ -183,10 +183,10 @@ Normal normal_of(const ShapeProblem& problem, const Slopes& slopes, double dampi
 }
 
 Touches read_touches(const Path& file) {
-  const replay::NumberTable table(file, {"x_mm", "y_mm", "z_mm"});
+  replay::Table table(file, {"x_mm", "y_mm", "z_mm"});
   Touches touches;
-  for (const auto& line : table.lines()) {
-    touches.push_back({line.values[0], line.values[1], line.values[2]});
+  while (table.next()) {
+    touches.push_back({table.number(0), table.number(1), table.number(2)});
   }
   if (touches.size() < 8) {
     replay::fail(file,

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
+#include "common/table.hpp"
 
 namespace replay {
 namespace {

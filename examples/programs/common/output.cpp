@@ -9,8 +9,8 @@
 #include <system_error>
 #include <vector>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
+#include "common/table.hpp"
 
 namespace replay {
 namespace {

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "common/signals.hpp"
 
-#include <cmath>
-#include <fstream>
 #include <limits>
 #include <vector>
 
-#include "common/csv_cells.hpp"
-#include "common/failure.hpp"
+#include "common/table.hpp"
 
 namespace replay {
 
@@ -27,45 +24,20 @@ Signals read_signals(const std::filesystem::path& file, int frame_count) {
   if (!std::filesystem::exists(file)) {
     return signals;
   }
-  std::ifstream stream(file);
-  std::string line;
-  const auto refuse = [&](int number, const std::string& why) {
-    fail(file, "line " + std::to_string(number) + ": " + why);
-  };
-  if (!std::getline(stream, line)) {
-    fail(file, "is empty or cannot be read");
+  Table table(file);
+  const bool with_pressure =
+      table.header() == std::vector<std::string>{"frame", "time_s", "pressure_mpa"};
+  if (!with_pressure && table.header() != std::vector<std::string>{"frame", "time_s"}) {
+    table.refuse("must be frame,time_s,pressure_mpa (the last is optional)");
   }
-  const std::vector<std::string> header = cells_of(line);
-  const bool with_pressure = header == std::vector<std::string>{"frame", "time_s", "pressure_mpa"};
-  if (!with_pressure && header != std::vector<std::string>{"frame", "time_s"}) {
-    refuse(1, "must be frame,time_s,pressure_mpa (the last is optional)");
-  }
-  for (int number = 2; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() == 1 && cells[0].empty()) {
-      continue;
+  while (table.next()) {
+    const int frame = table.index(0, frame_count, "frames");
+    (void)table.number(1);
+    if (with_pressure && !table.cells()[2].empty()) {
+      signals.pressures_mpa.emplace(frame, table.number(2));
     }
-    if (cells.size() != header.size()) {
-      refuse(number, "has " + std::to_string(cells.size()) + " values, must have " +
-                         std::to_string(header.size()));
-    }
-    double frame = 0;
-    if (!is_number(cells[0], frame) || frame != std::floor(frame) || frame < 0 ||
-        frame >= frame_count) {
-      refuse(number, "frame '" + cells[0] + "' is not one of the frames 0 to " +
-                         std::to_string(frame_count - 1));
-    }
-    double value = 0;
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      if (!(i == 2 && cells[i].empty()) && !is_number(cells[i], value)) {
-        refuse(number, header[i] + " '" + cells[i] + "' is not a number");
-      }
-    }
-    if (with_pressure && !cells[2].empty()) {
-      signals.pressures_mpa.emplace(static_cast<int>(frame), value);
-    }
-    if (!signals.times_s.emplace(static_cast<int>(frame), cells[1]).second) {
-      refuse(number, "frame " + cells[0] + " is given twice");
+    if (!signals.times_s.emplace(frame, table.cells()[1]).second) {
+      table.refuse("frame " + std::to_string(frame) + " is given twice");
     }
   }
   return signals;

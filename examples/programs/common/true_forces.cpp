@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "common/number_table.hpp"
+#include "common/table.hpp"
 
 namespace replay {
 
@@ -13,12 +13,13 @@ std::map<int, TrueForce> read_true_forces(const std::filesystem::path& file, int
   if (!std::filesystem::exists(file)) {
     return forces;
   }
-  const NumberTable table(file, {"frame", "force_x_n", "force_y_n", "force_z_n", "moment_z_nm"});
-  for (const auto& line : table.lines()) {
-    const int frame = table.index(line, 0, frame_count, "frames");
-    const auto& v = line.values;
-    if (!forces.emplace(frame, TrueForce{{v[1], v[2], v[3]}, 1000 * v[4]}).second) {
-      table.refuse(line, "frame " + std::to_string(frame) + " is given twice");
+  Table table(file, {"frame", "force_x_n", "force_y_n", "force_z_n", "moment_z_nm"});
+  while (table.next()) {
+    const int frame = table.index(0, frame_count, "frames");
+    const TrueForce force{{table.number(1), table.number(2), table.number(3)},
+                          1000 * table.number(4)};
+    if (!forces.emplace(frame, force).second) {
+      table.refuse("frame " + std::to_string(frame) + " is given twice");
     }
   }
   return forces;

@@ -42,7 +42,8 @@ const char* const about =
     "nothing behind.\n"
     "--check writes nothing; it lists the problems of the recording.\n"
     "--camera and --video show results live while the pad is touched; they need sensor.json,\n"
-    "reference.png and reference_depth.tiff in RECORDING. Press q or Esc to quit.";
+    "reference.png and reference_depth.tiff in RECORDING. Press q or Esc to quit, r to begin and to\n"
+    "end a recording under DIR of --record.";
 
 void add_live_options(CLI::App& app, replay::LiveOptions& live) {
   const auto camera = app.add_option("--camera", live.camera, "show the results for camera N live")
@@ -54,7 +55,13 @@ void add_live_options(CLI::App& app, replay::LiveOptions& live) {
   camera->excludes(video);
   const auto headless =
       app.add_flag("--headless", live.headless, "write the live pictures to DIR, without a window");
+  const auto record =
+      app.add_option("--record", live.record,
+                     "where the key r writes recordings: DIR/001, DIR/002, ...; replay reads them "
+                     "with --sensor RECORDING/sensor.json. With --headless: all frames")
+          ->option_text("DIR");
   for (const char* other : {"--check", "--raw", "--no-pictures"}) {
+    record->excludes(app.get_option(other));
     camera->excludes(app.get_option(other));
     video->excludes(app.get_option(other));
     headless->excludes(app.get_option(other));
@@ -103,6 +110,9 @@ int main(int argc, char** argv) {
     const bool in_window = live.asked_for() && !live.headless;
     if (live.headless && !live.asked_for()) {
       throw CLI::RequiresError("--headless", "--camera or --video");
+    }
+    if (!live.record.empty() && !live.asked_for()) {
+      throw CLI::RequiresError("--record", "--camera or --video");
     }
     if (in_window && !options.out.empty()) {
       throw CLI::RequiresError("--out", "--headless, with --camera or --video");

@@ -47,7 +47,7 @@ void expects_same(const Path& file, const std::string& options) {
   std::ifstream stream(file);
   std::string before;
   if (!std::getline(stream, before)) {
-    replay_many::write_file(file, options + "\n");
+    replay::write_file(file, options + "\n");
   } else if (before != options) {
     replay::fail(file,
                  "was started with other options (" + before + "); choose another output folder");
@@ -68,10 +68,10 @@ bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_m
 
 int lead(Crew& crew, const Arguments& arguments) {
   replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.settings);
-  replay_many::make_folders(arguments.out);
+  replay::make_folders(arguments.out);
   lock(arguments.out);
   std::filesystem::remove_all(arguments.out / "aside");
-  replay_many::make_folders(arguments.out / "aside");
+  replay::make_folders(arguments.out / "aside");
   const auto& replay = arguments.settings.replay;
   expects_same(
       arguments.out / "options.txt",

@@ -3,17 +3,16 @@
 #include "overview.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <system_error>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
 #include "common/frame_table.hpp"
+#include "common/table.hpp"
+#include "common/whole_files.hpp"
 
 namespace replay_many {
 namespace {
@@ -70,30 +69,6 @@ std::string in_address(const std::string& name) {
   return safe;
 }
 
-/// A file that is written under a temporary name.
-class Growing {
- public:
-  explicit Growing(const Path& place)
-      : place_(place), aside_(place.string() + ".part"), stream_(aside_, std::ios::binary) {}
-  template <class Value>
-  Growing& operator<<(const Value& value) {
-    stream_ << value;
-    return *this;
-  }
-  void publish() {
-    errno = 0;
-    stream_.close();
-    if (!stream_) {
-      replay::fail(aside_, "cannot be written: " + std::generic_category().message(errno));
-    }
-    publish_file(aside_, place_);
-  }
-
- private:
-  Path place_, aside_;
-  std::ofstream stream_;
-};
-
 /// Maximum or minimum of columns over the frames of a recording, NaN if unknown, and its doubts.
 struct Extremes {
   struct Column {
@@ -129,14 +104,8 @@ std::string in_words(double value) {
   return text;
 }
 
-std::ifstream opened_table(const Path& folder, Words& header) {
-  std::ifstream table(folder / "frames.csv");
-  std::string line;
-  if (!std::getline(table, line)) {
-    replay::fail(folder / "frames.csv", "cannot be read");
-  }
-  header = replay::cells_of(line);
-  return table;
+replay::Table frames_of(const Path& folder) {
+  return replay::Table(folder / "frames.csv", replay::Table::Lines::may_end_early);
 }
 
 class Overview {
@@ -182,9 +151,8 @@ class Overview {
   void find_columns() {
     for (const auto& found : recordings_.all()) {
       if (is_done(found.name)) {
-        Words header;
-        (void)opened_table(recordings_.place_of(found.name), header);
-        for (const std::string& name : header) {
+        const replay::Table table = frames_of(recordings_.place_of(found.name));
+        for (const std::string& name : table.header()) {
           if (std::find(columns_.begin(), columns_.end(), name) == columns_.end()) {
             columns_.push_back(name);
           }
@@ -215,23 +183,23 @@ class Overview {
   }
 
   long long add_frames(const std::string& name, Extremes& extremes) {
-    Words header;
-    std::ifstream table = opened_table(recordings_.place_of(name), header);
+    replay::Table table = frames_of(recordings_.place_of(name));
+    const Words& header = table.header();
     std::vector<std::size_t> places;
     for (const std::string& column : columns_) {
       places.push_back(static_cast<std::size_t>(std::find(header.begin(), header.end(), column) -
                                                 header.begin()));
     }
     long long frames = 0;
-    for (std::string line; std::getline(table, line); ++frames) {
-      const Words cells = replay::cells_of(line);
+    for (; table.next(); ++frames) {
+      const Words& cells = table.cells();
       std::string row = quoted(name);
       for (const std::size_t place : places) {
         row += ',';
-        row += place < cells.size() ? cells[place] : "";
+        row += place < header.size() ? cells[place] : "";
       }
       frames_ << row + '\n';
-      for (std::size_t k = 0; k < (std::min)(cells.size(), header.size()); ++k) {
+      for (std::size_t k = 0; k < header.size(); ++k) {
         extremes.see(header[k], cells[k]);
       }
     }
@@ -284,7 +252,7 @@ class Overview {
   }
 
   const Recordings& recordings_;
-  Growing frames_, summary_, page_;
+  replay::WholeFile frames_, summary_, page_;
   Words columns_;
   std::string tiles_;
   Counts counts_;

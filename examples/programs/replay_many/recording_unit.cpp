@@ -94,7 +94,7 @@ void do_recording(const std::vector<std::string>& arguments) {
   if (!is_part || last == first) {
     write_small_picture(options.out);
   }
-  publish_folder(options.out, place);
+  replay::publish_folder(options.out, place);
 }
 
 bool is_of_a_frame(const Path& file) {
@@ -120,7 +120,7 @@ void join_parts(const std::vector<std::string>& arguments) {
       }
     }
   }
-  publish_folder(whole, place);
+  replay::publish_folder(whole, place);
   fs::remove_all(Path(arguments.at(3)).parent_path());
 }
 

@@ -115,7 +115,7 @@ std::vector<Unit> Recordings::left(bool retry) {
     if (fs::exists(place_of(found.name), error) || failure_of(found.name)) {
       continue;
     }
-    make_folders(place_of(found.name).parent_path());
+    replay::make_folders(place_of(found.name).parent_path());
     if (!found.refused.empty()) {
       job().failed({found.name, {}, 0}, found.refused);
       continue;
@@ -168,7 +168,7 @@ std::vector<Unit> Recordings::units_of(const Found& found) {
   }
   std::vector<Unit> units;
   const Path parts = out_ / "parts" / found.name;
-  make_folders(parts);
+  replay::make_folders(parts);
   const auto add = [&](int first, int last, double size) {
     const Path place = parts / range_name(first, last);
     if (std::error_code error; !fs::exists(place, error)) {
@@ -217,8 +217,8 @@ Job Recordings::job() {
     return std::vector<Unit>{join_of(*found_of(unit))};
   };
   job.failed = [this](const Unit& unit, const std::string& reason) {
-    make_folders(failure_file(unit.name).parent_path());
-    write_file(failure_file(unit.name), reason + "\n");
+    replay::make_folders(failure_file(unit.name).parent_path());
+    replay::write_file(failure_file(unit.name), reason + "\n");
   };
   job.is_there = [this, found_of](const Unit& unit) {
     expects_input();

@@ -6,16 +6,19 @@
 //   DIR/failed/NAME.txt   the reason of a failure
 //   DIR/parts/NAME/PART/  parts of a long recording, until all parts exist
 //   DIR/aside/            temporary files
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "durable.hpp"
+#include "common/whole_files.hpp"
 #include "engine.hpp"
 #include "replay/replay.hpp"
 
 namespace replay_many {
+
+using Path = std::filesystem::path;
 
 /// How recordings are processed; `recording`, `out` and the frames belong to each unit.
 struct Settings {

@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
 #include "common/median.hpp"
+#include "common/table.hpp"
 #include "replay/foam/faults.hpp"
 
 namespace replay {
@@ -23,7 +20,6 @@ namespace fs = std::filesystem;
 using Place = std::pair<int, int>;  // row and column
 
 constexpr int max_places = 4096;  // rows or columns
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads up to four digits from position `at`, which it advances; nullopt if none or too large.
 std::optional<int> digits(const std::string& text, std::size_t& at) {
@@ -58,7 +54,6 @@ std::string name_of(const Place& place) {
 
 /// Positions of the columns in a line.
 struct Header {
-  std::vector<std::string> names;
   std::size_t frame = 0;
   std::size_t time = 0;
   std::map<Place, std::size_t> taxels;
@@ -66,19 +61,12 @@ struct Header {
   int cols = 0;
 };
 
-Header read_header(const fs::path& file, std::string line) {
-  if (line.rfind("\xEF\xBB\xBF", 0) == 0) {  // byte order mark, as spreadsheets write it
-    line.erase(0, 3);
-  }
-  const auto refuse = [&](const std::string& why) { fail(file, "line 1: " + why); };
-  if (const std::string why = wrong_separator(line); !why.empty()) {
-    refuse(why);
-  }
+Header header_of(const Table& table) {
+  const auto refuse = [&](const std::string& why) { table.refuse(why); };
   Header header;
-  header.names = cells_of(line);
   std::map<std::string, std::size_t> others;
-  for (std::size_t k = 0; k < header.names.size(); ++k) {
-    const std::string& name = header.names[k];
+  for (std::size_t k = 0; k < table.header().size(); ++k) {
+    const std::string& name = table.header()[k];
     const auto place = place_of(name);
     if (!place && name != "frame" && name != "time_s") {
       refuse("unknown column '" + name + "' (known: frame, time_s, r<row>_c<col>)");
@@ -114,89 +102,21 @@ Header read_header(const fs::path& file, std::string line) {
   return header;
 }
 
-/// Sets `number` to NaN for an empty or non-finite text; returns false if it is not a number.
-bool read_number(const std::string& text, double& number) {
-  char* end = nullptr;
-  number = std::strtod(text.c_str(), &end);
-  if (*end != '\0') {
-    return false;
+void add_line(const Table& from, const Header& header, TaxelTable& to) {
+  const double frame = from.number_or_nan(header.frame);
+  if (std::isfinite(frame) && (frame != std::floor(frame) || frame < 0 || frame > 1e9)) {
+    from.refuse("frame '" + from.cells()[header.frame] + "' is not a whole number >= 0");
   }
-  number = !text.empty() && std::isfinite(number) ? number : no_number;
-  return true;
+  const int next = to.frames.empty() ? 0 : to.frames.back() + 1;
+  to.frames.push_back(std::isfinite(frame) ? static_cast<int>(frame) : next);
+  const double time_s = from.number_or_nan(header.time);
+  to.times_s.push_back(time_s);
+  to.times.push_back(std::isfinite(time_s) ? from.cells()[header.time] : "");
+  for (const auto& [place, column] : header.taxels) {
+    to.readings.push_back(from.number_or_nan(column));
+    to.missing += std::isfinite(to.readings.back()) ? 0 : 1;
+  }
 }
-
-class TableReader {
- public:
-  explicit TableReader(const fs::path& file) : file_(file), stream_(file) {
-    std::string line;
-    if (!std::getline(stream_, line)) {
-      fail(file, "is empty or cannot be read");
-    }
-    header_ = read_header(file, line);
-    table_.rows = header_.rows;
-    table_.cols = header_.cols;
-  }
-
-  TaxelTable read() {
-    std::string line;
-    for (number_ = 2; std::getline(stream_, line); ++number_) {
-      cells_ = cells_of(line);
-      if (cells_.size() == 1 && cells_[0].empty()) {
-        continue;
-      }
-      if (const std::string why = wrong_separator(line); !why.empty()) {
-        refuse(why);
-      }
-      if (cells_.size() > header_.names.size()) {
-        refuse("has " + std::to_string(cells_.size()) + " values, but the header has only " +
-               std::to_string(header_.names.size()) +
-               " columns (decimals must be separated by '.')");
-      }
-      cells_.resize(header_.names.size());
-      add_line();
-    }
-    if (table_.frames.empty()) {
-      fail(file_, "holds no samples");
-    }
-    return std::move(table_);
-  }
-
- private:
-  [[noreturn]] void refuse(const std::string& why) const {
-    fail(file_, "line " + std::to_string(number_) + ": " + why);
-  }
-
-  double value(std::size_t column) const {
-    double number = 0;
-    if (!read_number(cells_[column], number)) {
-      refuse(header_.names[column] + " '" + cells_[column] + "' is not a number");
-    }
-    return number;
-  }
-
-  void add_line() {
-    const double frame = value(header_.frame);
-    if (std::isfinite(frame) && (frame != std::floor(frame) || frame < 0 || frame > 1e9)) {
-      refuse("frame '" + cells_[header_.frame] + "' is not a whole number >= 0");
-    }
-    const int next = table_.frames.empty() ? 0 : table_.frames.back() + 1;
-    table_.frames.push_back(std::isfinite(frame) ? static_cast<int>(frame) : next);
-    const double time_s = value(header_.time);
-    table_.times_s.push_back(time_s);
-    table_.times.push_back(std::isfinite(time_s) ? cells_[header_.time] : "");
-    for (const auto& [place, column] : header_.taxels) {
-      table_.readings.push_back(value(column));
-      table_.missing += std::isfinite(table_.readings.back()) ? 0 : 1;
-    }
-  }
-
-  fs::path file_;
-  std::ifstream stream_;
-  Header header_;
-  TaxelTable table_;
-  std::vector<std::string> cells_;
-  int number_ = 1;
-};
 
 /// Median time step between samples; 0 if no step is positive.
 double median_step_s(const std::vector<double>& times_s) {
@@ -251,7 +171,18 @@ void check_fingers(const fs::path& file, const FoamRecording& recording) {
 }  // namespace
 
 TaxelTable read_taxels(const fs::path& file) {
-  return TableReader(file).read();
+  Table from(file, Table::Lines::may_end_early);
+  const Header header = header_of(from);
+  TaxelTable table;
+  table.rows = header.rows;
+  table.cols = header.cols;
+  while (from.next()) {
+    add_line(from, header, table);
+  }
+  if (table.frames.empty()) {
+    fail(file, "holds no samples");
+  }
+  return table;
 }
 
 fingerpad::StridedView<const double> FoamRecording::finger(int sample, int finger) const {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
+#include "common/table.hpp"
 #include "replay/pictures/picture_parts.hpp"
 
 namespace replay {

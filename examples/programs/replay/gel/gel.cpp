@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "common/csv_cells.hpp"
 #include "common/failure.hpp"
 #include "common/images.hpp"
+#include "common/table.hpp"
 #include "fingerpad/core/check.hpp"
 #include "replay/pictures/picture_parts.hpp"
 

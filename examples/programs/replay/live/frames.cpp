@@ -96,6 +96,7 @@ bool LiveFrames::next(cv::Mat& frame) {
                     " bits, but live frames must have 8 bits and the size of the reference, " +
                     std::to_string(size_.width) + " x " + std::to_string(size_.height) + " px");
   }
+  stored_ = frame;
   frame = colours;
   return true;
 }

@@ -36,6 +36,7 @@ class LiveFrames {
 
   // These are for the last frame.
   int number() const { return number_; }
+  const cv::Mat& stored() const { return stored_; }  ///< as the camera gave it
   double time_s() const;  ///< since the first one
   Clock::time_point arrival() const { return arrival_; }
 
@@ -47,6 +48,7 @@ class LiveFrames {
   std::filesystem::path name_;
   cv::Size size_;
   PictureFormat format_;
+  cv::Mat stored_;
   double rate_hz_ = 0;
   Clock::duration period_ = {};  ///< frame period of a video; 0 for a camera
   bool in_real_time_ = true;

@@ -21,6 +21,7 @@
 #include "common/recording.hpp"
 #include "replay/chain.hpp"
 #include "replay/live/frames.hpp"
+#include "replay/live/recorder.hpp"
 #include "replay/pictures/picture_parts.hpp"
 #include "replay/pictures/pictures.hpp"
 
@@ -82,23 +83,25 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Returns false when the user closes the window or presses q or Esc.
-  bool show(const cv::Mat& picture) const {
+  /// Returns the key that was pressed, 'q' when the user closes the window or presses Esc.
+  int show(const cv::Mat& picture) const {
     cv::imshow(name, picture);
     const int key = cv::waitKey(1);
-    return key != 'q' && key != 27 && cv::getWindowProperty(name, cv::WND_PROP_VISIBLE) >= 1;
+    const bool is_open = cv::getWindowProperty(name, cv::WND_PROP_VISIBLE) >= 1;
+    return key == 27 || !is_open ? 'q' : key;
   }
 
  private:
   static constexpr const char* name = "fingerpad";
 };
 
-/// Turns frames into pictures. `show` receives each picture and its frame number; the loop ends
-/// when it returns false.
+/// Turns frames into pictures. `show` receives each picture and its frame number and returns the key
+/// that was pressed: q ends the loop, r begins or ends a recording.
 Log play(const Options& options,
          Recording& pad,
          LiveFrames& frames,
-         const std::function<bool(int, const cv::Mat&)>& show) {
+         Recorder& recorder,
+         const std::function<int(int, const cv::Mat&)>& show) {
   Chain chain(pad, options);
   const Painter painter(pad.sensor, pad.reference_depth, brightest_level(pad.reference));
   const int end = options.range.last.value_or((std::numeric_limits<int>::max)());
@@ -108,20 +111,25 @@ Log play(const Options& options,
   Log log;
   std::string title = "live";
   cv::Mat image;
-  bool goes_on = true;
-  while (goes_on && !is_interrupted() && frames.number() + 1 < end && frames.next(image)) {
+  int key = 0;
+  while (key != 'q' && !is_interrupted() && frames.number() + 1 < end && frames.next(image)) {
     const std::string time_s = format("%.2f", frames.time_s());
     pad.signals.times_s = {{frames.number(), time_s}};
     Scene scene = chain(frames.number(), image);
     scene.section = painter.find_section(scene.depth_mm);
-    goes_on = show(frames.number(), painter.montage(title, {std::move(scene)}, 1));
+    key = show(frames.number(), painter.montage(title, {std::move(scene)}, 1));
     log.add(frames, time_s);
+    recorder.add(frames.stored(), format("%.4f", frames.time_s()));
+    if (key == 'r') {
+      recorder.toggle();
+    }
     const std::vector<double> recent = log.latencies_ms(30);
     const int left_out =
         frames.number() + 1 - options.range.first - static_cast<int>(log.shown().size());
-    title = format("latency %.0f ms", recent[recent.size() / 2]) +
+    title = (recorder.is_on() ? format("recording, %d frames;  ", recorder.frames()) : "") +
+            format("latency %.0f ms", recent[recent.size() / 2]) +
             (log.rate_hz() > 0 ? format(",  %.0f pictures per second", log.rate_hz()) : "") +
-            (left_out > 0 ? format(",  %d frames skipped", left_out) : "");
+            (left_out > 0 ? format(",  %d frames lost", left_out) : "");
   }
   if (log.shown().empty()) {
     fail(options.recording, "there was no frame to show");
@@ -141,18 +149,24 @@ void print(const Log& log, const LiveFrames& frames, int first) {
               ms[ms.size() / 2], ms.back());
 }
 
-void play_to_window(const Options& options, Recording& pad, LiveFrames& frames) {
+void play_to_window(const Options& options,
+                    Recording& pad,
+                    LiveFrames& frames,
+                    Recorder& recorder) {
   const Window window;
-  const Log log =
-      play(options, pad, frames, [&](int, const cv::Mat& picture) { return window.show(picture); });
+  const Log log = play(options, pad, frames, recorder,
+                       [&](int, const cv::Mat& picture) { return window.show(picture); });
   print(log, frames, options.range.first);
 }
 
-void play_to_folder(const Options& options, Recording& pad, LiveFrames& frames) {
+void play_to_folder(const Options& options,
+                    Recording& pad,
+                    LiveFrames& frames,
+                    Recorder& recorder) {
   OutputFolder output(options.out);
-  const Log log = play(options, pad, frames, [&](int frame, const cv::Mat& picture) {
+  const Log log = play(options, pad, frames, recorder, [&](int frame, const cv::Mat& picture) {
     write_picture(output.file("pictures", numbered("live_", frame, ".png")), picture);
-    return true;
+    return 0;
   });
   const std::filesystem::path file = output.file("frames.csv");
   std::ofstream table(file);
@@ -183,10 +197,14 @@ int run_live(const Options& options, const LiveOptions& live) {
       live.camera ? LiveFrames::of_camera(*live.camera, size, pad.sensor.pictures)
                   : LiveFrames::of_video(live.video, size, pad.sensor.pictures, !live.headless);
   watch_for_interrupts();
+  Recorder recorder(live.record);
   if (live.headless) {
-    play_to_folder(options, pad, frames);
+    if (!live.record.empty()) {
+      recorder.toggle();
+    }
+    play_to_folder(options, pad, frames, recorder);
   } else {
-    play_to_window(options, pad, frames);
+    play_to_window(options, pad, frames, recorder);
   }
   return 0;
 }

@@ -52,7 +52,7 @@ void paint_arrow_legend(Sheet& sheet, double length, const std::string& words, c
 
 cv::Mat Painter::traction(const Scene& scene) const {
   constexpr double margin = 76;
-  Sheet sheet("Contact pressure and shear at the dots", caption(scene.frame, scene.time_s),
+  Sheet sheet("Load on each dot that is touched", caption(scene.frame, scene.time_s),
               scene.image.size(), 92, margin);
   Canvas& canvas = sheet.canvas;
   const Place& place = sheet.place;
@@ -67,10 +67,14 @@ cv::Mat Painter::traction(const Scene& scene) const {
   const double px_per_kpa = 36 / reach_kpa;
   const cv::Mat_<cv::Vec2d>& dots = scene.dots.dots_px;
   const double radius = 0.42 * place.shrink * dot_pitch_px_;
+  // elsewhere the loads are noise
+  const auto is_touched = [&](int i, int j) {
+    return is_present(dots(i, j)) && scene.dots.in_contact(i, j) != 0;
+  };
   for (int i = 0; i < dots.rows; ++i) {
     for (int j = 0; j < dots.cols; ++j) {
       const double kpa = 1000 * loads.pressure_mpa(i, j);
-      if (is_present(dots(i, j)) && std::isfinite(kpa)) {
+      if (is_touched(i, j) && std::isfinite(kpa)) {
         const double share = std::clamp((kpa + reach_kpa) / (2 * reach_kpa), 0.0, 1.0);
         const cv::Vec3b& colour = scale.colours(0, static_cast<int>(std::lround(255 * share)));
         canvas.disc(place.of(dots(i, j)[0], dots(i, j)[1]), radius,
@@ -81,10 +85,11 @@ cv::Mat Painter::traction(const Scene& scene) const {
   for (int i = 0; i < dots.rows; ++i) {
     for (int j = 0; j < dots.cols; ++j) {
       const cv::Vec3d& shear = loads.shear_mpa(i, j);
-      if (is_present(dots(i, j)) && std::isfinite(shear[0])) {
+      if (is_touched(i, j) && std::isfinite(shear[0])) {
         const Spot from = place.of(dots(i, j)[0], dots(i, j)[1]);
-        paint_arrow(canvas, from, from + 1000 * px_per_kpa * Spot(shear[0], shear[1]), 1.6,
-                    ink::black);
+        const Spot to = from + 1000 * px_per_kpa * Spot(shear[0], shear[1]);
+        paint_arrow(canvas, from, to, 3.4, ink::white);
+        paint_arrow(canvas, from, to, 1.6, ink::black);
       }
     }
   }

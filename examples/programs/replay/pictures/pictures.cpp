@@ -85,7 +85,7 @@ cv::Mat Painter::depth(const Scene& scene) const {
   const cv::Rect2d& map = place.box;
   const double right = place.right();
   const double below = place.below();
-  Canvas canvas(right + 116, below + 66);
+  Canvas canvas(right + 116, below + 90);
   canvas.text({map.x, 34}, "Depth of the membrane", 1.3 * letter, ink::black, Align::left, true);
   canvas.text({right + 96, 34}, caption(scene.frame, scene.time_s), letter, ink::black,
               Align::right);
@@ -105,6 +105,11 @@ cv::Mat Painter::depth(const Scene& scene) const {
               numbers;
   }
   canvas.text({map.x, below + 50}, numbers, letter, ink::black);
+  canvas.text({map.x, below + 74},
+              scene.section.dent_mm > 0
+                  ? "ring: the deepest dent; red marks: the row of the side view"
+                  : "red marks: the row of the side view",
+              letter, ink::grey);
   return canvas.finished();
 }
 

@@ -1,28 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-#include "durable.hpp"
+#include "common/whole_files.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
 #include <system_error>
 
 #include "common/failure.hpp"
 
-namespace replay_many {
+namespace replay {
 namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const Path& file, int error) {
-  replay::fail(file, "cannot be written: " + std::generic_category().message(error));
+[[noreturn]] void refuse(const fs::path& file, int error) {
+  fail(file, "cannot be written: " + std::generic_category().message(error));
 }
 
 /// Syncs a file's content, or a folder's directory entries.
-void sync(const Path& path) {
+void sync(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {
     refuse(path, errno);
@@ -34,9 +33,13 @@ void sync(const Path& path) {
   }
 }
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 }  // namespace
 
-void make_folders(const Path& folder) {
+void make_folders(const fs::path& folder) {
   std::error_code error;
   if (folder.empty() || fs::is_directory(folder, error)) {
     return;
@@ -46,31 +49,36 @@ void make_folders(const Path& folder) {
   if (error) {
     refuse(folder, error.value());
   }
-  sync(folder.parent_path().empty() ? "." : folder.parent_path());
+  sync(folder_of(folder));
 }
 
-void write_file(const Path& file, const std::string& text) {
-  Path aside = file;
-  aside += ".part";
+void write_file(const fs::path& file, const std::string& text) {
+  WholeFile whole(file);
+  whole << text;
+  whole.publish();
+}
+
+WholeFile::WholeFile(const fs::path& place)
+    : place_(place), aside_(place.string() + ".part"), stream_(aside_, std::ios::binary) {}
+
+void WholeFile::publish() {
   errno = 0;
-  std::ofstream stream(aside, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) {
-    refuse(aside, errno);
+  stream_.close();
+  if (!stream_) {
+    refuse(aside_, errno);
   }
-  publish_file(aside, file);
+  publish_file(aside_, place_);
 }
 
-void publish_file(const Path& file, const Path& place) {
+void publish_file(const fs::path& file, const fs::path& place) {
   sync(file);
   if (std::rename(file.c_str(), place.c_str()) != 0) {
     refuse(place, errno);
   }
-  sync(place.parent_path());
+  sync(folder_of(place));
 }
 
-void publish_folder(const Path& folder, const Path& place) {
+void publish_folder(const fs::path& folder, const fs::path& place) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     sync(entry.path());
   }
@@ -81,7 +89,7 @@ void publish_folder(const Path& folder, const Path& place) {
     }
     fs::remove_all(folder);
   }
-  sync(place.parent_path());
+  sync(folder_of(place));
 }
 
-}  // namespace replay_many
+}  // namespace replay
