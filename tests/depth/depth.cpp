@@ -181,24 +181,6 @@ TEST_CASE("what the light does not explain is masked for good", "[reference]") {
   CHECK(std::isnan(e.depth_mm(22, 28)));
 }
 
-TEST_CASE("the units of the grey scale do not matter", "[reference]") {
-  const Pad pad;
-  const auto depth = pad.free_depths();
-  auto frame = pad.frame<double>(depth, 1, 2);
-  const auto once = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth);
-  for (auto* channel : {&frame.red, &frame.green}) {
-    for (double& x : channel->cells) {
-      x *= 64;
-    }
-  }
-  const auto other = fit_reference(pad.camera, pad.fluid, frame.red, frame.green, depth,
-                                   GreyScale{64, 0, 255 * 64});
-  for (std::size_t k = 0; k < once.scattering.size(); ++k) {
-    REQUIRE(test::same_bits(once.scattering[k], other.scattering[k]));
-  }
-  CHECK(once.residual_rms == other.residual_rms);
-}
-
 TEST_CASE("pixels without a colour or a depth take no part", "[reference]") {
   const Pad pad;
   auto depth = pad.free_depths();
@@ -646,27 +628,6 @@ double free_pad_error(const Pad& pad, int window_px) {
   return test::largest_error(test::estimate(estimator, pad.frame<Pixel>(depth)).depth_mm, depth);
 }
 
-/// Means of a channel over windows of the pad.
-Image<double> box_mean(const Image<double>& channel, const Image<double>& free_mm, Index window) {
-  Image<double> mean(channel.rows(), channel.cols());
-  for (Index i = 0; i < channel.rows(); ++i) {
-    for (Index j = 0; j < channel.cols(); ++j) {
-      double sum = 0, count = 0;
-      for (Index p = (std::max)(i - window / 2, Index(0));
-           p <= (std::min)(i + window / 2, channel.rows() - 1); ++p) {
-        for (Index q = (std::max)(j - window / 2, Index(0));
-             q <= (std::min)(j + window / 2, channel.cols() - 1); ++q) {
-          const bool inside = free_mm(p, q) == free_mm(p, q);
-          sum += inside ? channel(p, q) : 0;
-          count += inside ? 1 : 0;
-        }
-      }
-      mean(i, j) = sum / count;
-    }
-  }
-  return mean;
-}
-
 }  // namespace
 
 TEST_CASE("smoothing leaves the free pad as it is, rim and printed dots included", "[smoothing]") {
@@ -680,16 +641,6 @@ TEST_CASE("smoothing leaves the free pad as it is, rim and printed dots included
   CHECK(free_pad_error<double, double>(pad, window_px) <= 1e-10);
   CHECK(free_pad_error<float, float>(pad, window_px) <= 3e-5);
   CHECK(free_pad_error<std::uint16_t, float>(pad, window_px) <= 2.2 * 3e-3);
-}
-
-TEST_CASE("a plain mean does not", "[smoothing]") {  // otherwise the test above would prove nothing
-  const Pad pad;
-  const auto depth = pad.free_depths();
-  auto frame = pad.frame<double>(depth);
-  frame.red = box_mean(frame.red, depth, 9);
-  frame.green = box_mean(frame.green, depth, 9);
-  const auto e = test::estimate(pad.estimator<double>({.window_px = 1}), frame);
-  CHECK(test::largest_error(e.depth_mm, depth) > 0.3);
 }
 
 TEMPLATE_TEST_CASE("what an invalid pixel holds changes no depth",
@@ -740,27 +691,6 @@ TEMPLATE_TEST_CASE("what an invalid pixel holds changes no depth",
 
 namespace {
 
-/// The solver of a pad for the pixels up to its rim.
-template <class S>
-struct Solver {
-  Pad pad;
-  double radius_px;
-  detail::DepthPolynomial<S> rows;
-
-  explicit Solver(double delta_per_mm = 0.0046, double aspect = 1)
-      : pad(with(delta_per_mm, aspect)),
-        radius_px(pad.base_radius_mm() / pad.camera.pitch_mm + 1),
-        rows(pad.camera, pad.fluid, radius_px, 0.8 * pad.scattering) {}
-
- private:
-  static Pad with(double delta_per_mm, double aspect) {
-    Pad pad;
-    pad.fluid.c_green_per_mm = pad.fluid.c_red_per_mm + delta_per_mm;
-    pad.camera.pixel_aspect = aspect;
-    return pad;
-  }
-};
-
 /// Whether two numbers are both NaN, or at most so many numbers of their type apart.
 template <class S>
 bool within_ulps(S a, S b, int ulps) {
@@ -784,7 +714,11 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
   using S = TestType;
   using Limits = std::numeric_limits<S>;
   constexpr auto block = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
-  const Solver<S> solver(0.0046, 1.2);
+  Pad pad;
+  pad.camera.pixel_aspect = 1.2;
+  const detail::DepthPolynomial<S> rows(pad.camera, pad.fluid,
+                                        pad.base_radius_mm() / pad.camera.pitch_mm + 1,
+                                        0.8 * pad.scattering);
   test::Random random(31);
   const S odd[] = {Limits::quiet_NaN(),
                    Limits::infinity(),
@@ -804,8 +738,8 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
   std::array<PixelStatus, block> status;
   std::array<Index, pixel_status_count> seen = {};
   for (std::size_t n = 0; n < 200000; n += block) {
-    const int row = static_cast<int>(random.whole(0, solver.pad.rows - 1));
-    const int col = static_cast<int>(random.whole(0, solver.pad.cols - 1));
+    const int row = static_cast<int>(random.whole(0, pad.rows - 1));
+    const int col = static_cast<int>(random.whole(0, pad.cols - 1));
     for (std::size_t i = 0; i < block; ++i) {
       green[i] = any(0, 120);
       red[i] = any(0, 1) * S(40) + green[i];
@@ -815,11 +749,10 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
         red[i] = green[i] * S(random.uniform(0.98, 1.02));
       }
     }
-    solver.rows.invert(row, col, red.data(), green.data(), per_g.data(), depth.data(),
-                       status.data());
+    rows.invert(row, col, red.data(), green.data(), per_g.data(), depth.data(), status.data());
     for (std::size_t i = 0; i < block; ++i) {
-      const S u = solver.rows.radius_sq(row, col + static_cast<int>(i));
-      const auto root = solver.rows.root(u, red[i], green[i], per_g[i]);
+      const S u = rows.radius_sq(row, col + static_cast<int>(i));
+      const auto root = rows.root(u, red[i], green[i], per_g[i]);
       const PixelStatus expected = !(per_g[i] > 0)             ? PixelStatus::outside_pad
                                    : root.target < 0           ? PixelStatus::below_range
                                    : root.target > root.total  ? PixelStatus::above_range
@@ -838,47 +771,6 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
                               PixelStatus::not_a_number, PixelStatus::outside_pad}) {
     CHECK(seen[static_cast<std::size_t>(s)] > 1000);
   }
-}
-
-TEMPLATE_TEST_CASE("a root is that of Newton's method", "[depth]", float, double) {
-  using S = TestType;
-  const double delta_per_mm = GENERATE(0.0, 1e-4, 0.0046);
-  const double aspect = GENERATE(1.0, 1.3);
-  const Solver<S> solver(delta_per_mm, aspect);
-  const Pad& pad = solver.pad;
-  const double top = pad.fluid.max_depth_mm;
-  test::Random random(32);
-  double worst = 0;
-  int found = 0;
-  for (int n = 0; n < 40000; ++n) {
-    const Index row = random.whole(0, pad.rows - 1), col = random.whole(0, pad.cols - 1);
-    if (pad.ray(row, col).plate_rho_mm > pad.base_radius_mm()) {
-      continue;
-    }
-    const S per_g = S(1 / (pad.scattering * random.uniform(0.8, 1.2)));
-    const double g = 1 / static_cast<double>(per_g);
-    const double bright = random.uniform(0.4, 1) * pad.brightness;
-    const auto c =
-        colour_at_depth(pad.fluid, pad.pencil(row, col), bright, g, random.uniform(0, top));
-    const S red = S(c.red), green = S(c.green);
-    // of the rounded colours
-    const auto newton =
-        newton_depth(pad.fluid, pad.pencil(row, col), g,
-                     Colour<double>{static_cast<double>(red), static_cast<double>(green)});
-    if (newton.status != PixelStatus::ok || newton.depth_mm < 1e-4 ||
-        newton.depth_mm > top - 1e-4) {
-      continue;  // the ends of the range have a test of their own
-    }
-    const S u = solver.rows.radius_sq(static_cast<int>(row), static_cast<int>(col));
-    const auto root = solver.rows.root(u, red, green, per_g);
-    REQUIRE((root.target >= 0 && root.target <= root.total));
-    worst = (std::max)(worst, std::abs(static_cast<double>(root.depth_mm) - newton.depth_mm));
-    ++found;
-  }
-  const double bound = std::is_same_v<S, float> ? 1e-5 : 1e-12;
-  CAPTURE(worst / bound);
-  CHECK(worst <= bound);
-  CHECK(found > 10000);
 }
 
 // The estimator.
@@ -1092,42 +984,6 @@ TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth", "[d
   // float frames are averaged as they are, not in steps of 1/128 grey level: 2.2 (sum of the
   // weights) times half a step, at 0.75 mm per level
   same(test::estimate(estimator, single), window_px > 1 ? 2.2 / 256 * 0.75 : 5e-5);
-}
-
-TEST_CASE("every number type gives the same depth", "[depth]") {
-  const Pad pad;
-  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(3), 1, 8);
-  const auto e = test::estimate(pad.estimator<double>({.window_px = 5}), frame);
-  const auto single = test::estimate(pad.estimator<float>({.window_px = 5}), frame);
-  // float works with residuals in steps of 1/128 grey level
-  CHECK(test::largest_error(single.depth_mm, e.depth_mm) <= 2.2 / 256 * 0.75);
-  // pixel by pixel in any other
-  const auto plain = test::estimate(pad.estimator<double>({.window_px = 1}), frame);
-  const auto reference = pad.reference<double>();
-  const auto with = [&](auto s) {
-    using S = decltype(s);
-    Image<double> depth(pad.rows, pad.cols, test::nan);
-    for (Index i = 0; i < pad.rows; ++i) {
-      for (Index j = 0; j < pad.cols; ++j) {
-        if (reference.in_pad(i, j)) {
-          const auto light = pad.pencil(i, j);
-          const Ray<S> ray{.path_factor = S(light.path_factor),
-                           .meridional_mm = S(light.meridional_mm),
-                           .sagittal_mm = S(light.sagittal_mm)};
-          const auto root =
-              newton_depth(cast<S>(pad.fluid), ray, S(reference.g(i, j)),
-                           Colour<S>{S(double(frame.red(i, j))), S(double(frame.green(i, j)))});
-          REQUIRE(root.status == plain.status(i, j));
-          depth(i, j) = static_cast<double>(value(root.depth_mm));
-        }
-      }
-    }
-    return depth;
-  };
-  for (const auto& depth : {with(0.0), with(0.0L), with(Dual<double>())}) {
-    CHECK(test::largest_error(depth, plain.depth_mm) <= 1e-11);
-    CHECK(test::largest_error(plain.depth_mm, depth) <= 1e-11);
-  }
 }
 
 namespace {
@@ -1874,17 +1730,6 @@ TEST_CASE("Newton's depth also has no bound of its own in 50 digits", "[depth]")
   CHECK(error_mm(root.depth_mm, p.exact) <= 1e-44);
 }
 
-namespace {
-
-/// The printed equations at a pixel with one height.
-double printed_quotient(const Pixel<double>& p, double l) {
-  const published::Fluid<double> fluid{p.fluid.c_red_per_mm, p.fluid.c_green_per_mm, p.fluid.kappa};
-  return published::quotient(fluid, p.light.path_factor, p.light.meridional_mm, p.colour.red,
-                             p.colour.green, l);
-}
-
-}  // namespace
-
 TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
   for (const int halvings : {2, 8, 16, 24}) {
     const double half_width = std::ldexp(18.0, 1 - halvings);
@@ -1902,15 +1747,6 @@ TEST_CASE("the bisection stays within the half-width it states", "[depth]") {
     CHECK(error <= half_width + 1e-9);  // some depths lie midway between two of its values
     CHECK(error > 0.2 * half_width);    // a much smaller error would be suspicious
   }
-}
-
-TEST_CASE("the published quotient has no value where the published bisection starts", "[depth]") {
-  // E006: at depth 0 it is (b - kappa r) / 0, an infinity with the wrong sign.
-  const Pixel<double> p(fluid_with(published_delta), 50, 6, brightness, true);
-  CHECK_FALSE(is_finite(printed_quotient(p, 0)));
-  CHECK_FALSE(printed_quotient(p, 0) >= p.g);  // the first step would go up, out of the fluid
-  CHECK(printed_quotient(p, 1e-3) > p.g);
-  CHECK(printed_quotient(p, static_cast<double>(p.exact)) == Approx(p.g).epsilon(1e-10));
 }
 
 namespace {

@@ -327,24 +327,6 @@ TEST_CASE("pre-slip: the shortest history", "[preslip]") {
   CHECK_FALSE(see(felt(4, 5)));
 }
 
-TEST_CASE("pre-slip: a copy goes its own way", "[preslip]") {
-  Preslip<> preslip(1, {.rule = PreslipRule::printed_grasp_optimise, .history = 8});
-  const auto see = [](Preslip<>& of, const Sample& sample) {
-    return of(Hand<1>{sample}) == PreslipStatus::preslip;
-  };
-  const Sample nothing = silent(none, none), first = felt(1, 2, 0, 0), second = felt(2, 2, 1, 1);
-  CHECK_FALSE(see(preslip, first));
-  auto copy = preslip;
-  CHECK(see(preslip, second));
-  CHECK_FALSE(see(copy, nothing));
-  const auto before = copy;
-  CHECK(see(copy, second));
-  copy.reset();
-  CHECK_FALSE(see(copy, second));
-  copy = before;
-  CHECK(see(copy, second));
-}
-
 TEST_CASE("pre-slip: a sample that is refused, or of another hand, is not added", "[preslip]") {
   Preslip<> preslip(2, {.rule = PreslipRule::printed_grasp_optimise, .history = 2});
   Sample refused;

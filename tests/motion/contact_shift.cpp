@@ -3,20 +3,16 @@
 // Properties of the shift of every contact, for any dots.
 #include "fingerpad/motion/contact_shift.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <opencv2/core.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/adapt/eigen.hpp"
-#include "fingerpad/adapt/opencv.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -324,105 +320,24 @@ TEST_CASE("contact shift: what is not known makes no edge", "[contact_shift]") {
   }
 }
 
-TEST_CASE("contact shift: a mask in any form", "[contact_shift]") {
-  const Points free = printed();
-  const Points dots = moved(free, {0.1, 1, 2});
-  const Mask bytes = disc();
-  const auto check_same = [&](const auto& mask) {
-    for (const bool edge : {true, false}) {
-      const auto a =
-          edge ? shift<EdgeDots>(free, dots, bytes) : shift<ContactDots>(free, dots, bytes);
-      const auto b =
-          edge ? shift<EdgeDots>(free, dots, mask) : shift<ContactDots>(free, dots, mask);
-      CHECK(b.status == ShiftStatus::measured);
-      CHECK(a.dots == b.dots);
-      CHECK(a.displacement.x == b.displacement.x);
-      CHECK(a.rotation_rad == b.rotation_rad);
-    }
-  };
-  Image<float> numbers(21, 21, 0);
-  Image<double> gaps(21, 21, test::nan);
-  Image<Touch> touches(21, 21, Touch::none);
-  Image<std::uint8_t> white(21, 21, 0);
-  Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> bools(21, 21);
-  for (Index i = 0; i < 21; ++i) {
-    for (Index j = 0; j < 21; ++j) {
-      bools(i, j) = bytes(i, j) != 0;
-      if (bytes(i, j) != 0) {
-        numbers(i, j) = j % 2 == 0 ? 0.25F : -1.0F;
-        gaps(i, j) = 1;
-        touches(i, j) = Touch::contact;
-        white(i, j) = 255;
-      }
-    }
-  }
-  check_same(bools);
-  check_same(numbers);
-  check_same(gaps);  // NaN means no contact
-  check_same(touches);
-  check_same(white);
-  check_same(LazyView(21, 21, [&](Index i, Index j) { return bytes(i, j) != 0; }));
-}
-
-TEST_CASE("contact shift: dots of any type", "[contact_shift]") {
-  Points free = printed(9, 9);
-  for (auto& p : free.cells) {  // exact in float
-    p = {static_cast<double>(static_cast<float>(p.x)),
-         static_cast<double>(static_cast<float>(p.y))};
-  }
-  const Points dots = [&] {
-    Points d = moved(free, {0.05, 0.5, -1});
-    for (auto& p : d.cells) {
-      p = {static_cast<double>(static_cast<float>(p.x)),
-           static_cast<double>(static_cast<float>(p.y))};
-    }
-    return d;
-  }();
+TEST_CASE("contact shift: of dots in space only the plane counts, in float or double",
+          "[contact_shift]") {
+  const Points free = printed(9, 9), dots = moved(free, {0.05, 0.5, -1});
   const Mask contact = disc(9, 9, 3);
   const auto expected = shift<EdgeDots, HuberMean>(free, dots, contact);
-  const auto check = [&](const auto& f, const auto& d) {
-    const auto r = shift<EdgeDots, HuberMean>(f, d, contact);
-    CHECK(r.status == expected.status);
-    CHECK(r.dots == expected.dots);
-    CHECK(r.displacement.x == expected.displacement.x);
-    CHECK(r.displacement.y == expected.displacement.y);
-    CHECK(r.rotation_rad == expected.rotation_rad);
-    CHECK(r.residual_rms == expected.residual_rms);
-  };
-  const auto as = [&]<class P>(const Points& from, const auto& make, P) {
-    Image<P> to(9, 9, make(from.cells.front()));
+  const auto in_space = [](const Points& from) {
+    Image<Point3<float>> to(9, 9);
     for (std::size_t k = 0; k < to.cells.size(); ++k) {
-      to.cells[k] = make(from.cells[k]);
+      to.cells[k] = {static_cast<float>(from.cells[k].x), static_cast<float>(from.cells[k].y),
+                     static_cast<float>(test::nan)};
     }
     return to;
   };
-  const auto f = [](double x) { return static_cast<float>(x); };
-  const auto small = [&](const auto& p) { return Point2<float>{f(p.x), f(p.y)}; };
-  // for dots in space only the plane counts, whatever the depth
-  const auto space = [](const auto& p) { return Point3<double>{p.x, p.y, test::nan}; };
-  const auto pair = [&](const auto& p) { return std::array<float, 2>{f(p.x), f(p.y)}; };
-  const auto vector = [](const auto& p) { return Eigen::Vector2d(p.x, p.y); };
-  check(as(free, small, Point2<float>()), as(dots, small, Point2<float>()));
-  check(as(free, space, Point3<double>()), as(dots, space, Point3<double>()));
-  check(as(free, pair, std::array<float, 2>()), as(dots, pair, std::array<float, 2>()));
-  check(as(free, vector, Eigen::Vector2d()), as(dots, vector, Eigen::Vector2d()));
-  check(as(free, vector, Eigen::Vector2d()), as(dots, small, Point2<float>()));  // mixed
-  cv::Mat_<cv::Point2f> cv_free(9, 9), cv_dots(9, 9);
-  for (int i = 0; i < 9; ++i) {
-    for (int j = 0; j < 9; ++j) {
-      cv_free(i, j) = {f(free(i, j).x), f(free(i, j).y)};
-      cv_dots(i, j) = {f(dots(i, j).x), f(dots(i, j).y)};
-    }
-  }
-  check(cv_free, cv_dots);
-  // rotated grids: the order of the dots in memory does not matter
-  const StridedView<const Point2<double>> a(free.cells.data(), 9, 9, 9),
-      b(dots.cells.data(), 9, 9, 9);
-  const StridedView<const std::uint8_t> c(contact.cells.data(), 9, 9, 9);
-  const auto r = shift<EdgeDots>(transpose(a), transpose(b), transpose(c));
-  const auto plain = shift<EdgeDots>(free, dots, contact);
-  CHECK(r.rotation_rad == Approx(plain.rotation_rad).epsilon(1e-12));
-  CHECK(r.displacement.x == Approx(plain.displacement.x).epsilon(1e-12));
+  const auto r = shift<EdgeDots, HuberMean>(in_space(free), in_space(dots), contact);
+  CHECK(r.status == expected.status);
+  CHECK(r.dots == expected.dots);
+  CHECK(std::abs(r.displacement.x - expected.displacement.x) < 1e-5);
+  CHECK(std::abs(r.rotation_rad - expected.rotation_rad) < 1e-6);
 }
 
 TEMPLATE_TEST_CASE("contact shift: dots that are missing do not count",

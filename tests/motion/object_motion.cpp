@@ -3,16 +3,12 @@
 // Properties for every object, every motion and every method.
 #include "fingerpad/motion/object_motion.hpp"
 
-#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
-#include "fingerpad/adapt/eigen.hpp"
-#include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "support/allocations.hpp"
@@ -287,37 +283,6 @@ TEST_CASE("object motion: names of statuses") {
   CHECK(std::string(name_of(MotionStatus::no_contact)) == "no contact");
   CHECK(std::string(name_of(MotionStatus::no_pose)) == "no pose");
   CHECK(std::string(name_of(MotionStatus::slipping)) == "slipping");
-}
-
-TEST_CASE("object motion: the same on every grid of dots and of flags") {
-  const Dots free = small_grid();
-  const Dots moved = rotated(free, {rotation_of(Angles<double>{0.1, 0.2, 0.3}), {1, 2, -1}});
-  Eigen::Matrix<Eigen::Vector3d, Eigen::Dynamic, Eigen::Dynamic> eigen(7, 7);
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> flags(7, 7);
-  cv::Mat_<cv::Vec3d> image(7, 7);
-  cv::Mat_<float> mask(7, 7);
-  for (Index i = 0; i < 7; ++i) {
-    for (Index j = 0; j < 7; ++j) {
-      const auto& p = moved(i, j);
-      eigen(i, j) = {p.x, p.y, p.z};
-      image(static_cast<int>(i), static_cast<int>(j)) = {p.x, p.y, p.z};
-      flags(i, j) = i + j != 5;
-      mask(static_cast<int>(i), static_cast<int>(j)) = i + j != 5 ? 255.0F : 0.0F;
-    }
-  }
-  const LazyView lazy_flags(7, 7, [](Index i, Index j) { return i + j != 5; });
-  ObjectMotion<> motion(7, 7);
-  (void)motion(free, lazy_flags);
-  auto second = motion, third = motion;
-  const auto a = motion(moved, lazy_flags);
-  const auto b = second(eigen, flags);
-  const auto c = third(image, mask);
-  REQUIRE(a.ok());
-  CHECK(a.dots_used == 43);
-  for (int i = 0; i < 9; ++i) {
-    CHECK(a.pose.rotation.m[i / 3][i % 3] == b.pose.rotation.m[i / 3][i % 3]);
-    CHECK(a.pose.rotation.m[i / 3][i % 3] == c.pose.rotation.m[i / 3][i % 3]);
-  }
 }
 
 TEST_CASE("object motion: other sizes do nothing") {
