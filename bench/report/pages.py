@@ -55,6 +55,11 @@ dragged plates, as a share of the coefficient of friction.""",
 with fresh noise ([what each is](calibrate/calibration.md#the-covariance-tried)). "On scenes": errors of the
 method, on finite-element scenes that were left out of the fit.""",
 }
+# Groups that say at another size what one beside them says: `bench/report/run NAME` prints them.
+LEFT_OUT = {"full pad, depths up to 18 mm", "full pad, two planes of 16 bit", "full pad, BGR", "radius 5 px",
+            "radius 50 px", "full pad, radius 25 px", "round pad, radius 25 px", "110 mm^2, heights", "heights",
+            "growth", "one frame, float", "vibrating, window 64", "lift, 400 steps", "lift, 4000 steps",
+            "8x10 dots, radius 9 px"}
 # The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
     ("depth of a pixel, rendered", "depth", "full pad, depths up to 14 mm", "published bisection, double",
@@ -99,6 +104,8 @@ def write_methods(build, docs, about):
         if program in NOTES:
             body.write(f"\n{NOTES[program]}\n")
         for group, rows in runs[program].items():
+            if group in LEFT_OUT or re.match("Grasp.*(quiet|1000$)", group):
+                continue
             if group in plotted:
                 k = plotted.index(group)
                 name = f"{program}_{k + 1}.png" if k else f"{program}.png"
