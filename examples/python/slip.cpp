@@ -84,6 +84,8 @@ void bind_slip(py::module_& module) {
       .def_readonly("slip", &Result::slip, "dots in contact that slip")
       .def_readonly("unknown", &Result::unknown, "dots in contact of unknown state")
       .def_readonly("out_of_place", &Result::out_of_place)
+      .def_readonly("far_apart", &Result::far_apart,
+                    "whether a dot has moved by more than half a pitch since the frame before")
       .def_property_readonly(
           "back", [](const Result& r) { return py::make_tuple(r.back_ratio, r.back_age); },
           "stick ratio and age of its reference, if the dots fall back")

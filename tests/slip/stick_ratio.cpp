@@ -696,9 +696,44 @@ TEST_CASE("stick ratio, bad input: a pattern that jumps by one pitch") {
   SECTION("fast but not by a pitch is motion") {
     Follower f;
     (void)f(shifted(0));
-    CHECK(f(shifted(10)).updated());
-    CHECK(f(shifted(40)).updated());
+    const auto by_half = f(shifted(10));
+    CHECK(by_half.updated());
+    CHECK_FALSE(by_half.far_apart);
+    const auto beyond = f(shifted(40));
+    CHECK(beyond.updated());
+    CHECK(beyond.far_apart);
   }
+}
+
+TEST_CASE("stick ratio: an object that carries its dots by a pitch between two frames") {
+  // 21 x 21 dots 20 px apart; the dots beside the contact stay, so that no label has changed
+  ContactFlags contact(21, 21, 0);
+  for (Index k = 0; k < 441; ++k) {
+    const Index down = k / 21 - 10, right = k % 21 - 10;
+    contact(k / 21, k % 21) = down * down + right * right <= 36 ? 1 : 0;
+  }
+  const auto frame = [&](double contact_px, double rest_px) {
+    PointsPx dots(21, 21);
+    for (Index k = 0; k < 441; ++k) {
+      const Index i = k / 21, j = k % 21;
+      dots(i, j) = {20.0 * static_cast<double>(j) + (contact(i, j) != 0 ? contact_px : rest_px),
+                    20.0 * static_cast<double>(i)};
+    }
+    return dots;
+  };
+  StickRatio<> stick(21, 21, {.noise = 0.1});
+  (void)stick(frame(0, 0), contact);
+  const auto carried = stick(frame(18, 0), contact);
+  CHECK(carried.updated());
+  CHECK(carried.far_apart);
+  CHECK(carried.stick_ratio == 1);
+  CHECK(carried.ratio_sd == Approx(carried.least_sd()));
+  const auto renumbered = stick(frame(38, 20), contact);
+  CHECK(renumbered.status == StickStatus::not_in_order);
+  CHECK(renumbered.stick_ratio == 1);
+  CHECK(renumbered.ratio_sd == Approx(1 / std::sqrt(3.0)));  // anything from 0 to 1
+  const auto at_rest = stick(frame(18.1, 0), contact);
+  CHECK_FALSE(at_rest.far_apart);
 }
 
 TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
@@ -1125,7 +1160,9 @@ TEST_CASE("stick ratio: its standard deviation is smaller with more dots, and gr
       }
     }
     CHECK(r.least_sd() == Approx(std::hypot(0.065, 0.9 / std::sqrt(dots))));
-    CHECK(r.ratio_sd == Approx(std::hypot(r.least_sd(), near / dots)));
+    // no answer before: all stuck
+    CHECK(r.ratio_sd ==
+          Approx(std::hypot(r.least_sd(), near / dots, (1 - r.stick_ratio) / std::sqrt(3.0))));
     auto lost = patch.dots;
     std::fill(lost.cells.begin(), lost.cells.end(), missing_mm);
     double before = r.ratio_sd;

@@ -125,9 +125,10 @@ constexpr Column columns[] = {
     {"rotation_sd_rad", [](const Row& r) { return cell_of(r.touch.motion.rotation_sd_rad); }},
     {"slip_status",
      [](const Row& r) {
-       return Text(!r.has_dots              ? ""
-                   : r.touch.slip.updated() ? "ok"
-                                            : name_of(r.touch.stick.status));
+       return Text(!r.has_dots               ? ""
+                   : !r.touch.slip.updated() ? name_of(r.touch.stick.status)
+                   : r.touch.stick.far_apart ? "frames far apart"
+                                             : "ok");
      }},
     {"dots_in_contact",
      [](const Row& r) { return whole_if(r.has_dots, r.touch.stick.dots_in_contact()); }},

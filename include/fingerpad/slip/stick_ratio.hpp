@@ -54,8 +54,8 @@ enum class StickStatus : std::uint8_t {
   /// which; the force does (friction_limit.hpp).
   falls_back,
   too_few_dots,  ///< fewer than six to compare, or in space on a line; nothing is dropped
-  /// More than a fifth of the dots in contact are not between their neighbours, or the dots are
-  /// labelled differently than before: all shifted by one place, rows and columns exchanged, two
+  /// More than a fifth of the dots in contact are not between their neighbours, or all dots are
+  /// labelled differently than before: shifted by one place, rows and columns exchanged, two
   /// halves exchanged. Or U is more than half a pitch, so that the noise was given in another unit.
   /// The frame is skipped.
   not_in_order,
@@ -111,11 +111,16 @@ struct [[nodiscard]] StickResult {
   /// standard deviation, and the frames since its reference.
   S back_ratio = not_a_number<S>(), back_sd = not_a_number<S>();
   Index back_age = 0;
+  /// Since the frame before, a dot in contact has moved by more than half a pitch: the frames are
+  /// too far apart. A slide can begin and end between them, and the ratio may come too late.
+  bool far_apart = false;
   S stick_ratio = not_a_number<S>();  ///< sticking dots / known dots, in [0, 1]; NaN: none yet
   /// Its standard deviation: sqrt(0.065^2 + 0.9^2 / n + q^2 + c^2 / 3) with n dots in contact, the
   /// share q of dots that slip by one to two times what counts as slip, as on a soft object or with
-  /// noise, and the change c since the last answer, which may be any part of a larger one when the
-  /// steps between frames are large. A kept ratio has 0.05 more with each frame, up to 0.5.
+  /// noise, and the change c since the last answer, before the first one since 1, which may be any
+  /// part of a larger one when the steps between frames are large. A kept ratio has 0.05 more with
+  /// each frame, up to 0.5, and where the dots do not tell, at least that of a number anywhere from
+  /// 0 to the ratio: the object may slide.
   S ratio_sd = not_a_number<S>();
   S furthest = S(0);        ///< d_max, the largest displacement from the reference
   Index reference_age = 0;  ///< frames from the reference to the answer
@@ -151,6 +156,7 @@ class StickRatio {
         frame_{rows, cols},
         now_(frame_.found),
         free_(frame_.found),
+        in_order_(frame_.found),
         measured_noise_(now_.size(), frame_.width),
         states_(now_.size(), DotState::none),
         slips_(now_.size(), no_slip()),
@@ -197,6 +203,7 @@ class StickRatio {
     }
     read_contact(touch);
     result_.back_ratio = result_.back_sd = not_a_number<S>();
+    result_.far_apart = false;
     result_.status = touching_ > 0 ? with_contact(time_s) : without_contact(time_s);
     count_states();
     const S sd = sqrt_of(square(result_.least_sd()) + doubt_sq_);
@@ -205,6 +212,10 @@ class StickRatio {
     } else if (result_.ratio_sd < S(0.5)) {
       result_.ratio_sd = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
     }
+    const bool is_lost =
+        result_.status == StickStatus::too_few_dots || result_.status == StickStatus::not_in_order;
+    const S from_0 = result_.stick_ratio / S(std::sqrt(3.0));
+    result_.ratio_sd = is_lost && result_.ratio_sd < from_0 ? from_0 : result_.ratio_sd;
     result_.back_sd = is_finite(result_.back_ratio) ? sd : not_a_number<S>();
     const bool slips = 10 * result_.slip > result_.stick + result_.slip;
     if (result_.updated() && slips && !has_outline_ && !options_.covers_pattern) {
@@ -342,10 +353,12 @@ class StickRatio {
   /// Searches the reference, answers by it, and stores the frame unless the dots rest.
   StickStatus compare(const S& reference_sq) {
     const S moved_sq = stored_count_ > 0 ? furthest_sq_from(stored(0)) : S(-1);
+    result_.far_apart = 4 * value(furthest_sq_from(in_order_.data())) > value(pitch_sq_);
     if (value(moved_sq) > 4 * value(reference_sq) &&
-        detail::is_renumbered(placed_, now_.data(), stored(0), frame_.width, pitch_sq_)) {
+        detail::is_renumbered(frame_, in_order_, pitch_sq_)) {
       return StickStatus::not_in_order;
     }
+    std::copy(frame_.found.begin(), frame_.found.end(), in_order_.begin());
     const bool rests = value(moved_sq) >= 0 && 16 * value(moved_sq) <= value(reference_sq);
     // At rest the image is not compared again: a membrane that creeps under a sliding object would
     // seem to stick more and more. In space, forces tell of the slide.
@@ -411,7 +424,7 @@ class StickRatio {
     });
     const S known = detail::number<S>(detail::size_of(pairs_));
     const S ratio = detail::number<S>(stick) / known;
-    const S change = is_finite(result_.stick_ratio) ? ratio - result_.stick_ratio : S(0);
+    const S change = ratio - (is_finite(result_.stick_ratio) ? result_.stick_ratio : S(1));
     doubt_sq_ = square(detail::number<S>(near - stick) / known) + change * change / S(3);
     if (falls_back()) {
       result_.back_ratio = ratio;
@@ -671,8 +684,9 @@ class StickRatio {
 
   StickOptions options_;
   detail::FrameOfDots<S> frame_;
-  Grid<P> now_;   // of it, the dots in contact and in place
-  Grid<P> free_;  // their positions without contact
+  Grid<P> now_;       // of it, the dots in contact and in place
+  Grid<P> free_;      // their positions without contact
+  Grid<P> in_order_;  // all dots of the last frame that was compared
   detail::FrameNoise<S> measured_noise_;
   Grid<DotState> states_;
   Grid<Point2<S>> slips_;

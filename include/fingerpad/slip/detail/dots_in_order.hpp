@@ -3,8 +3,6 @@
 #pragma once
 // Whether the whole pattern has been labelled otherwise than before, for example shifted by a
 // pitch.
-#include <vector>
-
 #include "fingerpad/core/detail/dot_frame.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
@@ -15,43 +13,36 @@ namespace fingerpad {
 inline namespace v0 {
 namespace detail {
 
-/// Whether the labels of the dots in these cells have changed and not their places: they are
-/// further than half a pitch (rms) from any rigid motion since `then`, or turned as in a mirror, or
-/// each stands within a third of a pitch (rms) of where the same neighbour stood.
+/// Whether the labels of the dots have changed and not their places: all dots found, in contact or
+/// not, are further than half a pitch (rms) from any rigid motion since `then`, or turned as in a
+/// mirror, or each stands within a third of a pitch (rms) of where the same neighbour stood. An
+/// object that carries the dots in contact by a pitch leaves the others.
 template <scalar S>
-bool is_renumbered(const std::vector<Index>& cells,
-                   const Point3<S>* now,
-                   const Point3<S>* then,
-                   Index width,
-                   const S& pitch_sq) {
-  const auto at = [&](const Point3<S>* dots, Index i) {
-    const Index k = cells.data()[i];
-    return is_finite(now[k]) && is_finite(then[k]) ? dots[k] : Point3<S>{S(0), S(0), S(0)};
-  };
-  const auto known = [&](Index i) {
-    const Index k = cells.data()[i];
-    return S(is_finite(now[k]) && is_finite(then[k]) ? 1 : 0);
+bool is_renumbered(const FrameOfDots<S>& now, const Bordered<Point3<S>>& then, const S& pitch_sq) {
+  const Index count = size_of(then), w = now.width;
+  const auto is_known = [&](Index k) { return is_finite(now.found[k]) && is_finite(then[k]); };
+  const auto at = [&](const Bordered<Point3<S>>& dots, Index k) {
+    return is_known(k) ? dots[k] : Point3<S>{S(0), S(0), S(0)};
   };
   const auto fit = fit_rigid<S>(
-      size_of(cells), [&](Index i) { return at(then, i); }, [&](Index i) { return at(now, i); },
-      known);
+      count, [&](Index k) { return at(then, k); }, [&](Index k) { return at(now.found, k); },
+      [&](Index k) { return S(is_known(k) ? 1 : 0); });
   // mean square distance from where they are expected, in pitches; NaN: fewer than half are known
   const auto off_sq = [&](const auto& expected) {
     S sum = S(0);
-    Index count = 0;
-    for (const Index k : cells) {
-      const Point3<S> off = now[k] - expected(k);
+    Index known = 0;
+    for (Index k = w + 1; k < count - w - 1; ++k) {  // within the border
+      const Point3<S> off = now.found[k] - expected(k);
       const S sq = off.x * off.x + off.y * off.y;
       sum = is_finite(sq) ? sum + sq : sum;
-      count += is_finite(sq) ? 1 : 0;
+      known += is_finite(sq) ? 1 : 0;
     }
-    return 2 * count > size_of(cells) ? value(S(sum / (number<S>(count) * pitch_sq)))
-                                      : not_a_number<scalar_real_t<S>>();
+    return 2 * known > now.count ? value(S(sum / (number<S>(known) * pitch_sq)))
+                                 : not_a_number<scalar_real_t<S>>();
   };
   const auto moved = [&](Index k) { return (*fit)(then[k]); };
   bool renumbered = fit && (4 * off_sq(moved) > 1 || 2 * value(fit->rotation.m[2][2]) < 1);
-  for (const Index to :
-       {1 - width, Index(-1), -width - 1, -width, width - 1, Index(1), width + 1, width}) {
+  for (const Index to : {1 - w, Index(-1), -w - 1, -w, w - 1, Index(1), w + 1, w}) {
     renumbered = renumbered || 9 * off_sq([&](Index k) { return then[k + to]; }) < 1;
   }
   return renumbered;
