@@ -689,24 +689,6 @@ TEMPLATE_TEST_CASE("what an invalid pixel holds changes no depth",
 
 // The solution by polynomials.
 
-namespace {
-
-/// Whether two numbers are both NaN, or at most so many numbers of their type apart.
-template <class S>
-bool within_ulps(S a, S b, int ulps) {
-  using Bits = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
-  if (a != a || b != b) {
-    return a != a && b != b;
-  }
-  if (a == b || std::signbit(a) != std::signbit(b)) {
-    return a == b;
-  }
-  const Bits apart = std::bit_cast<Bits>(a) - std::bit_cast<Bits>(b);
-  return apart >= -ulps && apart <= ulps;
-}
-
-}  // namespace
-
 TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one",
                    "[depth]",
                    float,
@@ -737,7 +719,7 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
   std::array<S, block> red, green, per_g, depth;
   std::array<PixelStatus, block> status;
   std::array<Index, pixel_status_count> seen = {};
-  for (std::size_t n = 0; n < 200000; n += block) {
+  for (std::size_t n = 0; n < 1000000; n += block) {
     const int row = static_cast<int>(random.whole(0, pad.rows - 1));
     const int col = static_cast<int>(random.whole(0, pad.cols - 1));
     for (std::size_t i = 0; i < block; ++i) {
@@ -759,7 +741,7 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
                                    : root.target <= root.total ? PixelStatus::ok
                                                                : PixelStatus::not_a_number;
       const S expected_mm = expected == PixelStatus::ok ? root.depth_mm : Limits::quiet_NaN();
-      if (status[i] != expected || !within_ulps(depth[i], expected_mm, 2)) {
+      if (status[i] != expected || !test::within_ulps(depth[i], expected_mm, 2)) {
         CAPTURE(u, red[i], green[i], per_g[i], depth[i], expected_mm);
         CAPTURE(static_cast<int>(status[i]), static_cast<int>(expected));
         FAIL("a block differs from its pixels");

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
 #include "fingerpad/pipeline/fingertip.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
+#include "support/numbers.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
@@ -98,6 +100,78 @@ TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
       }
     }
   });
+}
+
+TEMPLATE_TEST_CASE("a block has the samples of a million pixels one by one",
+                   "[sampling]",
+                   std::uint8_t,
+                   std::uint16_t,
+                   float,
+                   double) {
+  using Pixel = TestType;
+  using Sample = sample_t<Pixel>;
+  using Limits = std::numeric_limits<Pixel>;
+  constexpr double top = grey_scale_of<Pixel>().saturated;
+  test::Random random(53);
+  const double odd[] = {0, top, top, static_cast<double>((Limits::max)()),
+                        static_cast<double>(Limits::lowest())};
+  const auto any = [&] {
+    if (!std::is_integral_v<Pixel> && random.uniform() < 0.02) {
+      return random.uniform() < 0.5 ? Limits::quiet_NaN() : Limits::infinity();
+    }
+    return static_cast<Pixel>(random.uniform() < 0.1 ? odd[random.whole(0, 4)]
+                                                     : random.uniform(0.01, 0.99) * top);
+  };
+  Image<Pixel> red(400, 500), green(400, 500);
+  Index empty = 0;
+  for (const int step : {1, 2, 3, 4, 7}) {
+    for (std::size_t k = 0; k < red.cells.size(); ++k) {
+      red.cells[k] = any();
+      green.cells[k] = any();
+    }
+    const auto [r, g] = samples_of(red, green, step);
+    const auto law = [&](const Image<Pixel>& of, Index row, Index col) {
+      Sample sum = Sample(0);
+      double whole = 0, count = 0;
+      for (Index j = col * step; j < (col + 1) * step; ++j) {
+        Sample column = Sample(0);
+        for (Index i = row * step; i < (row + 1) * step; ++i) {
+          const auto x = static_cast<double>(red(i, j)), y = static_cast<double>(green(i, j));
+          if (x > 0 && y > 0 && x < top && y < top) {
+            column = static_cast<Sample>(column + static_cast<Sample>(of(i, j)));
+            whole += static_cast<double>(of(i, j));
+            count += 1;
+          }
+        }
+        sum = static_cast<Sample>(sum + column);
+      }
+      empty += count == 0 ? 1 : 0;
+      if (count == 0) {
+        return static_cast<Sample>(naive(red, green, row, col, step));
+      }
+      if constexpr (std::is_integral_v<Pixel>) {
+        return static_cast<Sample>(whole / count * (sizeof(Pixel) == 1 ? 256 : 1) + 0.5);
+      } else {
+        return sum / static_cast<Sample>(count);
+      }
+    };
+    for (Index i = 0; i < r.rows(); ++i) {
+      for (Index j = 0; j < r.cols(); ++j) {
+        const Sample expected[] = {law(red, i, j), law(green, i, j)}, found[] = {r(i, j), g(i, j)};
+        for (const std::size_t k : {0U, 1U}) {
+          bool same = found[k] == expected[k];
+          if constexpr (!std::is_integral_v<Pixel>) {
+            same = test::within_ulps(found[k], expected[k], 2);
+          }
+          if (!same) {
+            CAPTURE(step, i, j, k, found[k], expected[k]);
+            FAIL("a block differs from its law");
+          }
+        }
+      }
+    }
+  }
+  CHECK(empty > 1000);
 }
 
 TEST_CASE("a sampled frame of another size is refused", "[sampling]") {

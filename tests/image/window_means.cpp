@@ -137,6 +137,56 @@ TEST_CASE("whole numbers have exact sums, rounded as a box filter does", "[windo
   });
 }
 
+TEMPLATE_TEST_CASE("a block has the means of a million pixels one by one",
+                   "[window]",
+                   float,
+                   double) {
+  using S = TestType;
+  using Pixel = std::conditional_t<std::is_same_v<S, float>, std::int32_t, std::int64_t>;
+  const Index rows = 1000, cols = 1003;
+  const double top = std::is_same_v<S, float> ? 32767 : 0x1p47;
+  const int window = 7;
+  test::Random random(9);
+  Frame<Pixel> frame(rows, cols);
+  Image<std::uint8_t> inside(rows, cols);
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      frame.red(i, j) = static_cast<Pixel>(random.uniform(-top, top));
+      frame.green(i, j) = static_cast<Pixel>(random.uniform(0, top));
+      // patches without a pixel that counts are wider than the window
+      inside(i, j) = (i / 16 + j / 16) % 3 == 0 || random.uniform() < 0.1 ? 0 : 1;
+    }
+  }
+  const auto means = means_of<Pixel, S>(frame, inside, window, {-2 * top, 2 * top});
+  Index missing = 0;
+  for (Index i = 0; i < rows; ++i) {
+    for (Index j = 0; j < cols; ++j) {
+      for (const Index r : {Index(window / 2), Index(window / 2 + 1)}) {
+        std::int64_t red = 0, green = 0, count = 0;
+        for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
+          for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
+            red += inside(p, q) * frame.red(p, q);
+            green += inside(p, q) * frame.green(p, q);
+            count += inside(p, q);
+          }
+        }
+        missing += count == 0 ? 1 : 0;
+        const auto law = [&](std::int64_t sum) {
+          return count == 0 ? std::numeric_limits<S>::quiet_NaN() : S(sum) / S(count);
+        };
+        const bool is_inner = r == window / 2;
+        const S found = is_inner ? means.red(i, j) : means.outer_red(i, j);
+        if (!test::within_ulps(found, law(red), 2) ||
+            (is_inner && !test::within_ulps(means.green(i, j), law(green), 2))) {
+          CAPTURE(i, j, r, count, found, law(red), means.green(i, j), law(green));
+          FAIL("a block differs from its law");
+        }
+      }
+    }
+  }
+  CHECK(missing > 1000);
+}
+
 TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
                    "[window]",
                    float,

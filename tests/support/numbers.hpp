@@ -3,9 +3,12 @@
 #pragma once
 // Number types of the tests besides float, double and long double: fifty digits as the reference,
 // and a dual number that differs from the library's own.
+#include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "fingerpad/core/scalar.hpp"
 
@@ -13,6 +16,20 @@ namespace test {
 
 namespace mp = boost::multiprecision;
 using Digits50 = mp::number<mp::cpp_bin_float<50>, mp::et_off>;
+
+/// Whether two numbers are both NaN, or at most so many numbers of their type apart.
+template <class S>
+bool within_ulps(S a, S b, int ulps) {
+  using Bits = std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>;
+  if (a != a || b != b) {
+    return a != a && b != b;
+  }
+  if (a == b || std::signbit(a) != std::signbit(b)) {
+    return a == b;
+  }
+  const Bits apart = std::bit_cast<Bits>(a) - std::bit_cast<Bits>(b);
+  return apart >= -ulps && apart <= ulps;
+}
 
 /// A number and its derivative with respect to one seed.
 template <class Real>

@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -78,150 +77,139 @@ DepthReference<S> sampled(const DepthReference<S>& reference, int step) {
 
 namespace detail {
 
-/// The mean of `count` pixels, as a sample.
-template <class Pixel, class Sum>
-sample_t<Pixel> sample_of(const Sum& sum, int count) {
-  if constexpr (std::integral<Pixel>) {
-    constexpr Sum units = sizeof(sample_t<Pixel>) > sizeof(Pixel) ? 256 : 1;
-    const Sum pixels = static_cast<Sum>(count);
-    return static_cast<sample_t<Pixel>>((sum * units + pixels / 2) / pixels);
-  } else {
-    return sum / Sum(count);
-  }
-}
-
-/// One sample of both channels, whose first pixel is at (row, col).
-template <class Pixel, class Red, class Green>
-std::pair<sample_t<Pixel>, sample_t<Pixel>> one_sample(
-    const Red& red, const Green& green, Index row, Index col, int step) {
-  using Sample = sample_t<Pixel>;
-  using Sum = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
-  constexpr GreyScale scale = grey_scale_of<Pixel>();
-  Sum red_sum = Sum(0), green_sum = Sum(0);
-  int count = 0;
-  bool saturated = false, no_number = false;
-  for (Index k = 0; k < step * step; ++k) {
-    const Pixel of_red = red(row + k / step, col + k % step);
-    const Pixel of_green = green(row + k / step, col + k % step);
-    const auto r = static_cast<double>(of_red), g = static_cast<double>(of_green);
-    saturated = saturated || r >= scale.saturated || g >= scale.saturated;
-    no_number = no_number || r != r || g != g;
-    if (scale.counts(r) && scale.counts(g)) {
-      ++count;
-      red_sum = red_sum + Sum(of_red);
-      green_sum = green_sum + Sum(of_green);
-    }
-  }
-  if (count > 0) {
-    return {sample_of<Pixel>(red_sum, count), sample_of<Pixel>(green_sum, count)};
-  }
-  Sample none = Sample(0);
-  if constexpr (!std::integral<Sample>) {
-    none = no_number ? not_a_number<Sample>() : none;
-  }
-  none = saturated ? Sample(grey_scale_of<Sample>().saturated) : none;
-  return {none, none};
-}
-
-/// 64 samples of 8-bit pixels, with loops whose length the compiler knows. Step 0: any step.
-template <int Step>
+/// 64 samples of a row, with loops whose length the compiler knows. Step 0: any step.
+template <class Pixel, int Step>
 class SampleBlock {
  public:
   static constexpr std::size_t samples = 64;
+  using Sample = sample_t<Pixel>;
 
   explicit SampleBlock(int step) : step_(Step > 0 ? Step : step) {}
 
-  /// Samples from (row, col) of the frame, in pixels, on.
+  /// Takes in the samples from (row, col) of the frame on, `n` pixels wide.
   template <class Red, class Green>
-  void operator()(const Red& red,
-                  const Green& green,
-                  Index row,
-                  Index col,
-                  std::uint16_t* to_red,
-                  std::uint16_t* to_green) {
+  void read(const Red& red, const Green& green, Index row, Index col, Index n) {
     red_ = green_ = {};
-    count_ = bright_ = {};
-    const std::size_t width = samples * step();
-    std::array<std::uint8_t, pixels> red_row, green_row;
-    for (Index k = row; k < row + static_cast<Index>(step()); ++k) {
-      load_pixels(red, green, k, col, static_cast<Index>(width), red_row.data(), green_row.data());
-      for (std::size_t at = 0; at < width; at += samples) {
-        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &bright_[at]);
+    count_ = why_ = {};
+    std::array<Pixel, pixels> red_row = {}, green_row = {};
+    for (Index k = row; k < row + step(); ++k) {
+      load_pixels(red, green, k, col, n, red_row.data(), green_row.data());
+      for (std::size_t at = 0; at < samples * across(); at += samples) {
+        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &why_[at]);
       }
     }
-    write(to_red, to_green);
   }
 
- private:
-  static constexpr std::size_t pixels = samples * (Step > 0 ? Step : 16);
-
-  constexpr std::size_t step() const { return Step > 0 ? Step : static_cast<std::size_t>(step_); }
-
-  void write(std::uint16_t* to_red, std::uint16_t* to_green) const {
+  /// Writes `samples` samples of both channels.
+  void write(Sample* to_red, Sample* to_green) const {
     std::uint8_t lost = 0;
-    for (std::size_t k = 0; k < samples * step(); ++k) {
-      lost = static_cast<std::uint8_t>(lost | (count_[k] ^ step()));
+    for (std::size_t k = 0; k < samples * across(); ++k) {
+      lost = static_cast<std::uint8_t>(lost | (count_[k] ^ across()));
     }
     if (lost == 0) {  // a constant divisor needs no division
-      const int all = static_cast<int>(step() * step());
+      const auto all = static_cast<std::uint32_t>(step() * step());
       for (std::size_t j = 0; j < samples; ++j) {
-        to_red[j] = sample_of<std::uint8_t>(sum_of(red_, j), all);
+        to_red[j] = mean(sum_of<Total>(red_, j), all);
       }
       for (std::size_t j = 0; j < samples; ++j) {
-        to_green[j] = sample_of<std::uint8_t>(sum_of(green_, j), all);
+        to_green[j] = mean(sum_of<Total>(green_, j), all);
       }
       return;
     }
     for (std::size_t j = 0; j < samples; ++j) {
-      const auto count = static_cast<int>(sum_of(count_, j));
-      const auto none = static_cast<std::uint16_t>(sum_of(bright_, j) > 0 ? 255 * 256 : 0);
-      to_red[j] = count > 0 ? sample_of<std::uint8_t>(sum_of(red_, j), count) : none;
-      to_green[j] = count > 0 ? sample_of<std::uint8_t>(sum_of(green_, j), count) : none;
+      const auto count = sum_of<std::uint32_t>(count_, j);
+      if (count > 0) {
+        to_red[j] = mean(sum_of<Total>(red_, j), count);
+        to_green[j] = mean(sum_of<Total>(green_, j), count);
+      } else {
+        to_red[j] = to_green[j] = without_pixels(j);
+      }
     }
   }
 
+ private:
+  static constexpr std::size_t pixels = samples * (Step > 0 ? Step : 16);
+  using Total = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
+  using Column = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, Total>;
+  enum Why : std::uint8_t { saturated = 1, no_number = 2 };
+
+  constexpr int step() const { return Step > 0 ? Step : step_; }
+  constexpr std::size_t across() const { return static_cast<std::size_t>(step()); }
+
+  static Sample mean(const Total& sum, std::uint32_t count) {
+    if constexpr (std::integral<Pixel>) {
+      constexpr Total units = sizeof(Sample) > sizeof(Pixel) ? 256 : 1;
+      return static_cast<Sample>((sum * units + count / 2) / count);
+    } else {
+      return sum / Total(static_cast<int>(count));
+    }
+  }
+
+  Sample without_pixels(std::size_t j) const {
+    unsigned why = 0;
+    for (std::size_t k = j * across(); k < (j + 1) * across(); ++k) {
+      why |= why_[k];
+    }
+    if constexpr (!std::integral<Sample>) {
+      if (why == no_number) {
+        return not_a_number<Sample>();
+      }
+    }
+    return (why & saturated) != 0 ? Sample(grey_scale_of<Sample>().saturated) : Sample(0);
+  }
+
   /// Adds 64 pixels of a row to their columns, leaving out those without information.
-  static void add(const std::uint8_t* __restrict from_red,
-                  const std::uint8_t* __restrict from_green,
-                  std::uint16_t* __restrict reds,
-                  std::uint16_t* __restrict greens,
-                  std::uint8_t* __restrict counts,
-                  std::uint8_t* __restrict brights) {
-    std::array<std::uint8_t, samples> keep;  // 255: carries information, else 0
-    for (std::size_t i = 0; i < samples; ++i) {
-      const auto top =
-          static_cast<std::uint8_t>(-int((from_red[i] == 255) | (from_green[i] == 255)));
-      const auto dark = static_cast<std::uint8_t>(-int((from_red[i] == 0) | (from_green[i] == 0)));
-      brights[i] = static_cast<std::uint8_t>(brights[i] | top);
-      keep[i] = static_cast<std::uint8_t>(~(top | dark));
-    }
-    for (std::size_t i = 0; i < samples; ++i) {
-      reds[i] = static_cast<std::uint16_t>(reds[i] + (from_red[i] & keep[i]));
-    }
-    for (std::size_t i = 0; i < samples; ++i) {
-      greens[i] = static_cast<std::uint16_t>(greens[i] + (from_green[i] & keep[i]));
-    }
-    for (std::size_t i = 0; i < samples; ++i) {
-      counts[i] = static_cast<std::uint8_t>(counts[i] - keep[i]);  // 255 is -1
+  [[gnu::noinline]] static void add(const Pixel* __restrict reds,
+                                    const Pixel* __restrict greens,
+                                    Column* __restrict red_sums,
+                                    Column* __restrict green_sums,
+                                    std::uint8_t* __restrict counts,
+                                    std::uint8_t* __restrict whys) {
+    const Pixel top = Pixel(grey_scale_of<Pixel>().saturated), dark = Pixel(0);
+    if constexpr (std::integral<Pixel>) {
+      std::array<Pixel, samples> keep;  // all bits, or none
+      for (std::size_t i = 0; i < samples; ++i) {
+        const auto bright = static_cast<Pixel>(-int((reds[i] >= top) | (greens[i] >= top)));
+        const auto black = static_cast<Pixel>(-int((reds[i] <= dark) | (greens[i] <= dark)));
+        whys[i] = static_cast<std::uint8_t>(whys[i] | (bright & saturated));
+        keep[i] = static_cast<Pixel>(~(bright | black));
+        counts[i] = static_cast<std::uint8_t>(counts[i] + (keep[i] & 1));
+      }
+      for (std::size_t i = 0; i < samples; ++i) {
+        red_sums[i] = static_cast<Column>(red_sums[i] + static_cast<Column>(reds[i] & keep[i]));
+      }
+      for (std::size_t i = 0; i < samples; ++i) {
+        green_sums[i] =
+            static_cast<Column>(green_sums[i] + static_cast<Column>(greens[i] & keep[i]));
+      }
+    } else {
+      for (std::size_t i = 0; i < samples; ++i) {
+        const auto r = value(reds[i]), g = value(greens[i]);
+        const bool keeps = r > dark && g > dark && r < top && g < top;
+        whys[i] |= r >= top || g >= top ? saturated : r != r || g != g ? no_number : 0;
+        counts[i] = static_cast<std::uint8_t>(counts[i] + (keeps ? 1 : 0));
+        red_sums[i] = keeps ? red_sums[i] + reds[i] : red_sums[i];
+        green_sums[i] = keeps ? green_sums[i] + greens[i] : green_sums[i];
+      }
     }
   }
 
   /// Sum over the columns of sample j.
-  template <class Cells>
-  [[gnu::always_inline]] std::uint32_t sum_of(const Cells& cells, std::size_t j) const {
+  template <class Sum, class Cells>
+  [[gnu::always_inline]] Sum sum_of(const Cells& cells, std::size_t j) const {
     if constexpr (Step > 0) {  // no loop, so that the one over the samples becomes vectors
       return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
-        return (std::uint32_t(0) + ... + std::uint32_t(cells[j * Step + K]));
+        return (Sum(0) + ... + Sum(cells[j * std::size_t(Step) + K]));
       }
       (std::make_index_sequence<std::size_t(Step)>{});
     } else {
-      return std::accumulate(&cells[j * step()], &cells[j * step()] + step(), std::uint32_t(0));
+      return std::accumulate(&cells[j * across()], &cells[j * across()] + step(), Sum(0));
     }
   }
 
   int step_;
-  std::array<std::uint16_t, pixels> red_, green_;  // sums of each column
-  std::array<std::uint8_t, pixels> count_, bright_;
+  std::array<Column, pixels> red_, green_;  // sums of each column
+  std::array<std::uint8_t, pixels> count_, why_;
 };
 
 }  // namespace detail
@@ -244,32 +232,30 @@ bool sample_frame(const Red& red,
       rows != from_red.rows() / step || cols != from_red.cols() / step) {
     return false;
   }
-  Index done = 0;  // samples of each row
-  if constexpr (std::same_as<Pixel, std::uint8_t>) {
-    const auto blocks = [&]<int Step>(detail::SampleBlock<Step> block) {
-      constexpr Index n = block.samples;
-      const Index across = (cols + n - 1) / n;
-      for (Index k = 0; k < rows * across; ++k) {
-        const Index row = k / across, first = (std::min)(k % across * n, cols - n);  // some twice
-        block(from_red, from_green, row * step, first * step, to_red.row(row) + first,
-              to_green.row(row) + first);
+  const bool in_place = to_red.col_stride() == 1 && to_green.col_stride() == 1;
+  const auto sample = [&]<int Step>(detail::SampleBlock<Pixel, Step> block) {
+    constexpr Index size = block.samples;
+    const Index blocks = (cols + size - 1) / size, n = (std::min)(size, cols);
+    for (Index k = 0; k < rows * blocks; ++k) {
+      const Index i = k / blocks, first = (std::min)(k % blocks * size, cols - n);  // some twice
+      block.read(from_red, from_green, i * step, first * step, n * step);
+      if (in_place && n == size) {
+        block.write(&to_red(i, first), &to_green(i, first));
+        continue;
       }
-      done = cols;
-    };
-    constexpr Index least = detail::SampleBlock<0>::samples;
-    if (cols >= least && to_red.col_stride() == 1 && to_green.col_stride() == 1) {
-      step == 1   ? blocks(detail::SampleBlock<1>(step))
-      : step == 2 ? blocks(detail::SampleBlock<2>(step))
-      : step == 3 ? blocks(detail::SampleBlock<3>(step))
-      : step == 4 ? blocks(detail::SampleBlock<4>(step))
-                  : blocks(detail::SampleBlock<0>(step));
+      std::array<sample_t<Pixel>, block.samples> reds, greens;
+      block.write(reds.data(), greens.data());
+      for (Index j = 0; j < n; ++j) {
+        to_red(i, first + j) = reds[static_cast<std::size_t>(j)];
+        to_green(i, first + j) = greens[static_cast<std::size_t>(j)];
+      }
     }
-  }
-  for (Index k = 0; k < rows * (cols - done); ++k) {
-    const Index i = k / (cols - done), j = done + k % (cols - done);
-    std::tie(to_red(i, j), to_green(i, j)) =
-        detail::one_sample<Pixel>(from_red, from_green, i * step, j * step, step);
-  }
+  };
+  step == 1   ? sample(detail::SampleBlock<Pixel, 1>(step))
+  : step == 2 ? sample(detail::SampleBlock<Pixel, 2>(step))
+  : step == 3 ? sample(detail::SampleBlock<Pixel, 3>(step))
+  : step == 4 ? sample(detail::SampleBlock<Pixel, 4>(step))
+              : sample(detail::SampleBlock<Pixel, 0>(step));
   return true;
 }
 
