@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/slip/friction_limit.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -40,7 +41,9 @@ TEST_CASE("friction limit: the load of a contact from force, moment and dots", "
   CHECK(load.tangential_n == Approx(0.5));
   CHECK(load.moment_n_mm == Approx(1.5));
   CHECK(load.arm_mm == Approx(2.0 / 3 * 5.9).epsilon(0.025));
-  CHECK(friction_of(load) == Approx(std::hypot(0.25, 1.5 / (load.arm_mm * 2))));
+  const double along = 0.25, about = 1.5 / (load.arm_mm * 2), ellipse = std::hypot(along, about);
+  const double mixed = 2 * along * about / square(ellipse);
+  CHECK(friction_of(load) == Approx(ellipse / (1 - 0.067 * square(mixed))));
   SECTION("it turns with the pad") {
     const auto turn = test::moved_by({0.2, -0.3, 0.5}, {1, 2, 3}, {0, 0, 1});
     auto dots = patch.dots;
@@ -87,6 +90,31 @@ TEST_CASE("friction limit: dots on a line lie in a level surface", "[friction_li
   CHECK(load.tangential_n == Approx(0.5));
   CHECK(load.moment_n_mm == Approx(1.5));
   CHECK(load.arm_mm == Approx(2 * std::sqrt(5.0)));
+}
+
+TEST_CASE("friction limit: L is the friction of a disc that slides and turns about any point") {
+  // sums over a lattice of the disc, under even pressure and, which L was not made for, Hertz's
+  for (const bool is_even : {true, false}) {
+    double worst = 0;
+    for (const double away : {0.0, 0.1, 0.2, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 3.0, 10.0, 1e6}) {
+      Point3<double> sum = {0, 0, 0};  // force, and moment as z
+      double pressure = 0, arms = 0;
+      for (double x = -0.99; x < 1; x += 0.02) {
+        for (double y = -0.99; y < 1; y += 0.02) {
+          const double p = x * x + y * y < 1 ? is_even ? 1 : std::sqrt(1 - x * x - y * y) : 0;
+          const double across = x - away, slide = std::hypot(across, y);
+          sum += 0.6 * p / slide * Point3<double>{-y, across, x * across + y * y};
+          pressure += p;
+          arms += p * std::hypot(x, y);
+        }
+      }
+      const double l = friction_of(
+          ContactLoad<double>{pressure, std::hypot(sum.x, sum.y), sum.z, arms / pressure});
+      worst = std::max(worst, std::abs(l / 0.6 - 1));
+    }
+    CAPTURE(is_even);
+    CHECK(worst < (is_even ? 0.01 : 0.015));
+  }
 }
 
 TEST_CASE("friction limit: without tangential force L is 0 and has a slope", "[friction_limit]") {
