@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "support/catch.hpp"
@@ -106,6 +107,11 @@ TEMPLATE_TEST_CASE("W is accurate to 4 epsilon", "[absorption]", float, double) 
     INFO(worst);
     CHECK(worst <= 4);
   }
+}
+
+TEST_CASE("absorption: names of the statuses of a pixel", "[absorption]") {
+  CHECK(std::string(name_of(PixelStatus::ok)) == "ok");
+  CHECK(std::string(name_of(PixelStatus::outside_pad)) == "outside pad");
 }
 
 TEST_CASE("W in 50 digits is the published closed form", "[absorption]") {

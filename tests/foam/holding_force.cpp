@@ -461,8 +461,6 @@ TEST_CASE("searches: names, ends and plans", "[holding_force]") {
     CHECK(is_end(static_cast<SearchPhase>(k)) == (k >= 2));
   }
   CHECK(std::string(name_of(static_cast<SearchPhase>(99))) == "unknown");
-  CHECK(LoosenUntilPreslip<double>(short_plan()).options().watch_samples == 3);
-  CHECK(LiftWithRegrip<double>(short_lift()).options().settle_samples == 2);
 }
 
 TEMPLATE_TEST_CASE("searches: in any number",

@@ -362,7 +362,6 @@ TEST_CASE("pre-slip: bad parameters are refused by name, value and range", "[pre
 }
 
 TEST_CASE("pre-slip: what is written down of itself", "[preslip]") {
-  CHECK(Preslip<>(2, {.history = 7}).options().history == 7);
   CHECK(test::refusal([] { Preslip<>(0); }) == "Preslip: fingers = 0, must be in [1, 100]");
   CHECK(test::refusal([] { Preslip<>(101); }) == "Preslip: fingers = 101, must be in [1, 100]");
   CHECK(std::string(name_of(PreslipRule::grasp_lift)) == "grasp_lift");

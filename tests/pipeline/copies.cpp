@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/foam/taxels.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
@@ -92,4 +93,14 @@ TEST_CASE("a copy takes no memory in a frame either", "[no_allocation]") {
             CHECK(felt.status == TaxelStatus::vibrating);
           }) == 0);
   }
+}
+
+TEST_CASE("copies share what is constant of the pad", "[copies]") {
+  const long before = test::bytes_taken();
+  const ContactRegion<> region(Camera<double>(), 64, 64);
+  const long made = test::bytes_taken();
+  const ContactRegion<> copy = region;
+  // two places on the ray of each pixel, which took twice that while their vector grew
+  const long rays = 64 * 64 * 4 * static_cast<long>(sizeof(double));
+  CHECK(test::bytes_taken() - made < made - before - rays * 3 / 2);
 }

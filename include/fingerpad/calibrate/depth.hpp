@@ -140,7 +140,7 @@ struct AbsorptionPoint {
     using Light = PadLight<S, Degree>;
     const S path = s.ray.path_factor * s.depth_mm;
     const S w = flat ? S(1) : scattered_light(s.depth_mm, c_red, s.ray);
-    const S membrane = weight * s.colour.green * (flat ? S(1) : S(exp(delta * path)));
+    const S membrane = weight * s.colour.green * (flat ? S(1) : exp(delta * path));
     const S x = s.plate_mm.x / scale_mm, y = s.plate_mm.y / scale_mm;
     S g = S(0);
     for (const S& m : decltype(Light::kappa)::monomials(x, y)) {
@@ -250,11 +250,11 @@ bool descend(const AbsorptionProblem<S, Degree>& problem,
     const S determinant = cc * dd - cd * cd;
     // At the limit delta = 0, delta only moves if that is downhill.
     const bool at_limit = !(p.delta > S(0)) && !(down_delta > S(0));
-    const S step = at_limit ? S(down_c / cc) : S((dd * down_c - cd * down_delta) / determinant);
+    const S step = at_limit ? down_c / cc : (dd * down_c - cd * down_delta) / determinant;
     const S c_red = p.c_red * exp((std::max)(S(-1), (std::min)(step, S(1))));
     const S delta =
         at_limit ? S(0)
-                 : (std::max)(S(p.delta + (cc * down_delta - cd * down_c) / determinant), S(0));
+                 : (std::max)(p.delta + (cc * down_delta - cd * down_c) / determinant, S(0));
     const auto next = problem.project(c_red, delta, p.linear);
     const bool moved = !(square(step) + square((delta - p.delta) / c_red) <= square(tiny));
     if (next.is_physical() && next.cost < p.cost) {
@@ -265,7 +265,7 @@ bool descend(const AbsorptionProblem<S, Degree>& problem,
         return true;
       }
     } else {
-      damping = (std::max)(S(damping * S(10)), tiny);
+      damping = (std::max)(damping * S(10), tiny);
       if (!moved || damping > S(1) / tiny) {  // even the shortest step leads uphill
         return true;
       }
@@ -358,7 +358,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   require(owner, {{"grey_noise", grey_noise, not_negative}});
   using Fit = AbsorptionFit<S, Degree>;
   const S rho_sq = detail::expects_determined(samples, Fit::parameters);
-  const S scale_mm = rho_sq > S(0) ? S(sqrt(rho_sq)) : S(1);
+  const S scale_mm = rho_sq > S(0) ? sqrt(rho_sq) : S(1);
   std::vector<DepthSample<S>> few;
   const std::size_t stride = (samples.size() + 399) / 400;
   for (std::size_t k = 0; k < samples.size(); k += stride) {
@@ -409,7 +409,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.delta_at_limit = !(p.delta > S(0));
 
   const double left = static_cast<double>(samples.size()) - static_cast<double>(all);
-  const S by_residual = left > 0 ? S(sqrt(p.cost / S(left))) : not_a_number<S>();
+  const S by_residual = left > 0 ? sqrt(p.cost / S(left)) : not_a_number<S>();
   const S noise = grey_noise > S(0) ? grey_noise : by_residual;
   for (std::size_t i = 0; i < all; ++i) {  // c_red and delta come first
     for (std::size_t j = 0; j < all; ++j) {

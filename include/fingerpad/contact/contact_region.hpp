@@ -407,7 +407,7 @@ class ContactRegion {
   double free_sd_per_mm_ = 0;        // of the curvature about it
   std::vector<S> statistic_, raw_, mean_;  // curvatures: clamped, plain, smoothed
   detail::ReservedVector<S> samples_{2 * most};
-  std::vector<Ray> rays_;
+  detail::SharedVector<Ray> rays_;
 };
 
 }  // namespace v0

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -263,7 +264,7 @@ class EquivalentFlatArea {
   Index row_step_, col_step_;  // px between the points of the lattice
   Index rows_, cols_;          // of the lattice
   Index margin_ = 0;           // in steps of the distance
-  std::vector<Ray> rays_;
+  detail::SharedVector<Ray> rays_;
   std::vector<Point3<S>> points_;
   std::vector<Index> distances_;
   std::vector<Curve> curves_;

@@ -14,6 +14,7 @@
 // dots. The second equation does not contain B, so these do not affect the depth: its root is the
 // depth, by newton_depth() in any scalar. Whole frames go by polynomials, depth/depth.hpp. Colours
 // are grey levels, lengths mm, g grey levels per mm^2.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -165,6 +166,13 @@ enum class PixelStatus : std::uint8_t {
   outside_pad = 6,   ///< the reference has no depth or no g > 0 here
 };
 inline constexpr std::size_t pixel_status_count = 7;
+
+/// "ok", "below range", ...
+constexpr const char* name_of(PixelStatus status) {
+  constexpr std::array<const char*, pixel_status_count> names = {
+      "ok", "below range", "above range", "not a number", "dark", "saturated", "outside pad"};
+  return names[static_cast<std::size_t>(status)];
+}
 
 /// A depth and whether it may be used; depth_mm is NaN unless the status is ok.
 template <scalar S>

@@ -150,7 +150,7 @@ class IntensityDepth {
     } else {
       const S plain = S(level);
       const bool tells = S(options_.dark) < plain && plain < S(options_.saturated);
-      return tells ? S(log(plain)) : not_a_number<S>();
+      return tells ? log(plain) : not_a_number<S>();
     }
   }
 

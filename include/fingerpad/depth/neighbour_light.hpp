@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -184,7 +185,7 @@ class NeighbourLightCompensation {
         cols_(as_view(reference_depth_mm).cols()),
         depth_mm_(static_cast<std::size_t>((rows_ + 2) * (cols_ + 2)), not_a_number<S>()),
         psi0_(static_cast<std::size_t>(rows_ * cols_), S(0)),
-        membrane_(psi0_),
+        membrane_(psi0_.size(), S(0)),
         change_(rows_, cols_, light),
         lost_(change_),
         row_(static_cast<std::size_t>(cols_), S(0)),
@@ -352,8 +353,8 @@ class NeighbourLightCompensation {
   Point2<S> per_mm_;  // pixels along x and along y
   Index rows_, cols_;
   std::vector<S> depth_mm_, reference_mm_;  // with a border of one cell, which is missing
-  std::vector<S> psi0_;                     // of the reference; NaN where missing
-  std::vector<S> membrane_;                 // pixels of each disc that have psi0
+  detail::SharedVector<S> psi0_;            // of the reference; NaN where missing
+  detail::SharedVector<S> membrane_;        // pixels of each disc that have psi0
   detail::DiscSums<S> change_, lost_;       // of psi in rad; of pixels
   std::vector<S> row_, lost_row_, sum_;
   bool is_any_lost_ = false;

@@ -36,12 +36,12 @@ S depth_between_pixels(const Depth& depth_mm, const S& row, const S& col) {
   const S right = col - S(static_cast<double>(j));
   const auto share = [&](Index r, Index c, const S& weight) {
     // a pixel with weight 0 may be missing or outside of the map
-    return value(weight) == 0 ? S(0) : S(weight * S(grid_traits<Depth>::at(depth_mm, r, c)));
+    return value(weight) == 0 ? S(0) : weight * S(grid_traits<Depth>::at(depth_mm, r, c));
   };
   const S up = S(1) - down;
   const S left = S(1) - right;
-  const S depth = share(i, j, S(up * left)) + share(i, j + 1, S(up * right)) +
-                  share(i + 1, j, S(down * left)) + share(i + 1, j + 1, S(down * right));
+  const S depth = share(i, j, up * left) + share(i, j + 1, up * right) +
+                  share(i + 1, j, down * left) + share(i + 1, j + 1, down * right);
   return is_finite(depth) ? depth : not_a_number<S>();
 }
 

@@ -113,7 +113,6 @@ class LoosenUntilPreslip {
     command_.force_n = options.first_force_n;
   }
 
-  const LoosenOptions<S>& options() const { return options_; }
   const HoldingCommand<S>& command() const { return command_; }
 
   /// The command after one more sample.
@@ -203,7 +202,6 @@ class LiftWithRegrip {
     command_.phase = SearchPhase::watching;
   }
 
-  const LiftOptions<S>& options() const { return options_; }
   const HoldingCommand<S>& command() const { return command_; }
 
   /// The command after one more sample.

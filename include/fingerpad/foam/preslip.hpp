@@ -196,8 +196,6 @@ class Preslip {
         fingers_(static_cast<std::size_t>(fingers)),
         samples_(fingers_ * static_cast<std::size_t>(options.history)) {}
 
-  const PreslipOptions& options() const { return options_; }
-
   /// Forgets all samples.
   void reset() { count_ = 0; }
 

@@ -404,7 +404,6 @@ class TaxelFeatures {
   /// Adds the taxels that vibrate to the sample, and which of them vibrates most.
   void list_vibrations(FingerSample<S>& sample) {
     using std::sqrt;
-    Index strongest = FingerSample<S>::no_location, waves_of_strongest = 0;
     for (std::size_t k = 0; k < taxels_.size(); ++k) {
       if (!can_vibrate(taxels_[k]) || !(window_.range(k) > 2 * taxels_[k].least)) {
         continue;
@@ -415,13 +414,11 @@ class TaxelFeatures {
         sample.add_vibration(static_cast<Index>(k), waves);
         if (value(sample.deviation) < value(rms)) {
           sample.deviation = rms;
-          strongest = static_cast<Index>(k);
-          waves_of_strongest = waves;
+          sample.location = static_cast<Index>(k);
+          sample.waves = waves;
         }
       }
     }
-    sample.location = strongest;
-    sample.waves = waves_of_strongest;
   }
 
   Index rows_;

@@ -133,7 +133,7 @@ class Annulus {
     for (int i = 0; i < 8; ++i) {
       S weight = S(1) / S(i < 4 ? -products[i] : products[7 - i]);
       for (int l = 0; l < 8; ++l) {
-        weight = l != i ? S(weight * (w - S(l - 3))) : weight;
+        weight = l != i ? weight * (w - S(l - 3)) : weight;
       }
       at.around[static_cast<std::size_t>(i)] = weight;
       at.meridian[static_cast<std::size_t>(i)] =

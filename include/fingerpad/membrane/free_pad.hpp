@@ -103,7 +103,7 @@ class FreePad {
   /// The stretch of the apex at which the membrane ends at its rim.
   std::optional<S> apex_stretch(const S& load_per_mm) const {
     const auto miss = [&](const S& stretch) {
-      return S(profile(stretch, load_per_mm).r - cap_.base_radius_mm);
+      return profile(stretch, load_per_mm).r - cap_.base_radius_mm;
     };
     const auto misses = [&](double stretch) {
       return static_cast<double>(value(miss(S(stretch))));

@@ -23,10 +23,11 @@
 namespace fingerpad {
 inline namespace v0 {
 
-/// One pad. The object is the state: copy it to return to a frame later; copies share the free pad.
-/// A copy with all stages takes 4.3 MB at 640 x 480 pixels and 441 dots, and less time than half a
-/// frame (docs/results.md). Use one object a thread. A frame allocates nothing, throws nothing,
-/// and takes bounded time, O(rows cols) for the image and O(dots) for the rest.
+/// One pad. The object is the state: copy it to return to a frame later; copies share what is
+/// constant of the pad. A copy takes some 3 MB at 640 x 480 pixels and 441 dots, and less than a
+/// fifth of the time of a frame (docs/results.md). Use one object a thread. A frame allocates
+/// nothing, throws nothing, and takes bounded time, O(rows cols) for the image and O(dots) for the
+/// rest.
 class Fingertip {
  public:
   /// Refuses bad parameters (parameter_error).

@@ -41,7 +41,7 @@ S circle_center_curvature(const S& radius_mm,
   const S u = (square(radius_mm) + square(after_mm) - square(center_mm) -
                S(2) * (after_mm - center_mm) * z) /
               (S(2) * radius_mm);
-  const S curvature = S(1) / sqrt(square(u) + square(S(center_mm - z)));
+  const S curvature = S(1) / sqrt(square(u) + square(center_mm - z));
   return value(center_mm) < value(z) ? -curvature : curvature;
 }
 
@@ -111,7 +111,7 @@ void for_each_compared(const Depth& depth_mm,
     }
   }
   if (!o.every_direction) {
-    visit(S(sum / S(o.directions)));
+    visit(sum / S(o.directions));
   }
 }
 

@@ -150,7 +150,6 @@ class StickRatio {
 
  private:
   std::size_t at(Index k, Index l) const { return static_cast<std::size_t>(k * cols_ + l); }
-  bool is_inner(Index k, Index l) const { return k > 0 && l > 0 && k + 1 < rows_ && l + 1 < cols_; }
 
   template <class Dots, class Contact>
   bool read(const Dots& dots_px, const Contact& contact) {

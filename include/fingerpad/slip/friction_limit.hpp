@@ -344,8 +344,8 @@ class FrictionLimit {
   S chance_of_slide(const S& friction) const {
     using std::exp;
     const S below = (S(1) - friction / limit_) / S(noise());
-    const S slides =
-        S(S(0) < below ? exp(-below * below / S(2)) : S(1)) / S(noise() * 2.5066282746310002);
+    const S fall = S(0) < below ? exp(-below * below / S(2)) : S(1);
+    const S slides = fall / S(noise() * 2.5066282746310002);
     return slides / (S(1) + slides);
   }
   /// Of a ratio of 0 by friction, where the dots say `otherwise`. Less than least_stick sticks in a

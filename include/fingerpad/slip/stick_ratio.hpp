@@ -332,7 +332,7 @@ class StickRatio {
     pitch_sq_ = detail::mean_pitch_sq(placed_, now_.data(), frame_.width);
     const S pitch = sqrt_of(pitch_sq_), known = S(noise());
     // no camera finds dots better than a 2000th of a pitch
-    sd_ = value(known) > 0 ? (std::max)(known, S(pitch / S(2000))) : S(pitch / S(150));
+    sd_ = value(known) > 0 ? (std::max)(known, pitch / S(2000)) : pitch / S(150);
     const S reference = sd_ * S(2 * gain * std::sqrt(ln_100) / options_.slip_share);
     return 2 * value(reference) > value(pitch) && value(pitch) > 0 ? StickStatus::not_in_order
                                                                    : compare(reference * reference);
@@ -654,7 +654,7 @@ class StickRatio {
   bool falls_back() const {
     S then = S(0), now = S(0), moved = S(0);
     const auto apart_sq = [](const P& a, const P& b) {
-      return square(S(a.x - b.x)) + square(S(a.y - b.y));
+      return square(a.x - b.x) + square(a.y - b.y);
     };
     for (const Pair& p : pairs_) {
       if (is_finite(free_[p.k])) {
@@ -679,7 +679,7 @@ class StickRatio {
   static Point2<S> no_slip() { return {not_a_number<S>(), not_a_number<S>()}; }
   static S sqrt_of(const S& sq) {
     using std::sqrt;
-    return value(sq) > 0 ? S(sqrt(sq)) : S(0);
+    return value(sq) > 0 ? sqrt(sq) : S(0);
   }
 
   StickOptions options_;

@@ -37,7 +37,7 @@ S edge_share(const S& offset) {
   using std::acos;
   using std::sqrt;
   if (value(offset) < 0) {
-    return S(1) - edge_share(S(-offset));
+    return S(1) - edge_share(-offset);
   }
   if (!(value(offset) < 1)) {
     return S(1);

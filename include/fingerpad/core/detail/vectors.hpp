@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vectors of memory that is taken once.
+// Vectors of memory that is taken once, and vectors that copies share.
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace fingerpad {
@@ -27,6 +28,24 @@ class ReservedVector : public std::vector<T> {
   }
   ReservedVector& operator=(ReservedVector&&) noexcept = default;
   ~ReservedVector() = default;
+};
+
+/// A vector that its owner fills in its constructor and only reads afterwards: copies of the owner
+/// share it.
+template <class T>
+class SharedVector {
+ public:
+  explicit SharedVector(std::size_t size = 0, const T& all = T())
+      : cells_(std::make_shared<std::vector<T>>(size, all)) {}
+  void push_back(const T& cell) { cells_->push_back(cell); }
+  T* data() { return cells_->data(); }
+  const T* data() const { return cells_->data(); }
+  T& operator[](std::size_t k) { return (*cells_)[k]; }
+  const T& operator[](std::size_t k) const { return (*cells_)[k]; }
+  std::size_t size() const { return cells_->size(); }
+
+ private:
+  std::shared_ptr<std::vector<T>> cells_;
 };
 
 }  // namespace detail

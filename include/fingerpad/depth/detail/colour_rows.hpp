@@ -24,6 +24,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
@@ -323,10 +324,10 @@ class ColourRows {
   Index cols_;
   S kappa_, per_kappa_;
   // Planes of the area; a plane has a block of spare elements at its end.
-  std::vector<S> rise_;       // exp(delta k l0)
-  std::vector<S> scattered_;  // g W(l0), grey levels
-  std::vector<S> per_g_;
-  std::vector<S> gain_;  // a plane, or one row of 1
+  SharedVector<S> rise_;       // exp(delta k l0)
+  SharedVector<S> scattered_;  // g W(l0), grey levels
+  SharedVector<S> per_g_;
+  SharedVector<S> gain_;  // a plane, or one row of 1
   std::optional<WindowMeans<std::uint32_t>> short_means_;
   std::optional<WindowMeans<std::uint64_t, S>> wide_means_;  // empty: no window
   std::array<S, 2> weight_ = {};

@@ -22,21 +22,21 @@ struct Quadric {
   Index dots = 0;
 
   static std::array<S, 6> terms(const S& x, const S& y) {
-    return {S(1), x, y, S(x * x), S(x * y), S(y * y)};
+    return {S(1), x, y, x * x, x * y, y * y};
   }
   S height(const Point3<S>& p) const {
-    const auto t = terms(S(p.x - middle.x), S(p.y - middle.y));
+    const auto t = terms(p.x - middle.x, p.y - middle.y);
     return middle.z + c[0] + c[1] * t[1] + c[2] * t[2] + c[3] * t[3] + c[4] * t[4] + c[5] * t[5];
   }
   /// dz/dx and dz/dy.
   Point2<S> slope(const Point3<S>& p) const {
     const S x = p.x - middle.x, y = p.y - middle.y;
-    return {S(c[1] + S(2) * c[3] * x + c[4] * y), S(c[2] + c[4] * x + S(2) * c[5] * y)};
+    return {c[1] + S(2) * c[3] * x + c[4] * y, c[2] + c[4] * x + S(2) * c[5] * y};
   }
   /// Unit normal toward the object.
   Point3<S> normal(const Point3<S>& p) const {
     const Point2<S> z = slope(p);
-    return normalized(Point3<S>{S(-z.x), S(-z.y), S(1)});
+    return normalized(Point3<S>{-z.x, -z.y, S(1)});
   }
 };
 
@@ -52,7 +52,7 @@ Quadric<S> quadric_through(const ForEach& for_each) {
   q.middle = q.middle / S(static_cast<double>((std::max)(q.dots, Index(1))));
   ProductSums<S, 7> sums;
   for_each([&](const Point3<S>& p) {
-    const auto t = Quadric<S>::terms(S(p.x - q.middle.x), S(p.y - q.middle.y));
+    const auto t = Quadric<S>::terms(p.x - q.middle.x, p.y - q.middle.y);
     sums.add({t[0], t[1], t[2], t[3], t[4], t[5], p.z - q.middle.z});
   });
   const NormalEquations<S, 6> bent(sums.template corner<6>(), 1e-3);

@@ -40,7 +40,7 @@ class FrameNoise {
       for (const Index beside : {Index(1), width_}) {
         const auto moved = [&](Index i) { return now.data()[i] - before_.data()[i]; };
         const Point3<S> e = S(2) * moved(k) - moved(k - beside) - moved(k + beside);
-        const auto sq = static_cast<double>(value(S(e.x * e.x + e.y * e.y)));
+        const auto sq = static_cast<double>(value(e.x * e.x + e.y * e.y));
         if (is_finite(sq)) {
           squares_.push_back(sq);
         }
