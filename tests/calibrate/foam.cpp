@@ -253,6 +253,38 @@ TEST_CASE("taxel noise: the most that a window spread", "[taxel_noise]") {
   }
 }
 
+TEST_CASE("taxel noise: what shakes is no noise", "[taxel_noise]") {
+  // taxels have the share p of their variance in common, with either sign, at any frequency
+  for (const double period : {2.3, 5.0, 0.0}) {
+    for (const double p : {0.0, 0.3, 0.7, 0.95}) {
+      CAPTURE(period, p);
+      Random random(5);
+      double common = 0;
+      const auto reading = [&](Index k, Index i, Index j, double noise) {
+        if (i == 0 && j == 0) {
+          common = period > 0 ? std::sqrt(2) * std::sin(2 * std::numbers::pi * double(k) / period)
+                              : gaussian(random);
+        }
+        return 800 + 7 * (std::sqrt(p) * ((i + j) % 2 == 0 ? 1 : -1) * common +
+                          std::sqrt(1 - p) * noise);
+      };
+      const TaxelNoise noise = recorded(4, 5, 16 * 40, 3, reading).fit();
+      CHECK(noise.shared == Approx(p).margin(p > 0 ? 0.1 : 0.16));
+      CHECK(noise.ok() == (p < 0.5));
+      CHECK((noise.ok() || std::string(noise.cause).find("shakes") != std::string::npos));
+    }
+  }
+  const auto shaken = [](Index k, Index, Index, double noise) {
+    return 800 + 50 * std::sin(2 * double(k)) + noise;
+  };
+  CHECK_FALSE(recorded(1, 3, 16 * 8, 1, shaken).fit().ok());
+  CHECK(std::isnan(recorded(1, 2, 16 * 8, 1, shaken).fit().shared));  // two cannot tell
+  // an object that shakes in a third of the windows does not count
+  CHECK(recorded(4, 5, 16 * 30, 1, [&](Index k, Index i, Index j, double noise) {
+          return k % 48 < 16 ? shaken(k, i, j, noise) : 800 + noise;
+        }).fit().ok());
+}
+
 TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {
   // A load f_k at x_k, with noise s of each taxel: the centroid with sum F has the variance s^2 sum
   // (x_k - x)^2 / F^2 along x.

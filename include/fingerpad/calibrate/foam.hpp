@@ -36,6 +36,10 @@ struct [[nodiscard]] TaxelNoise {
   /// exceed it if nothing was touched.
   S largest_factor = S(0);
   S centroid_deviation_mm = S(0);  ///< of the centroid, in a window; NaN: never pressed
+  /// Share of the readings' spread that taxels have in common, from the squared correlations of all
+  /// pairs: about 0 for noise, 1 for an object that shakes; NaN with fewer than three taxels that
+  /// change, or windows of fewer than 8 samples.
+  S shared = not_a_number<S>();
   Index windows = 0;               ///< number of windows used
 
   bool ok() const { return cause == nullptr; }
@@ -53,7 +57,9 @@ class TaxelNoiseCalibration {
         window_(now_.size(), options.window),
         residuals_(static_cast<std::size_t>(options.window), S(0)),
         variances_(now_.size()),
-        is_bad_(now_.size(), false) {}
+        is_bad_(now_.size(), false),
+        times_((std::min)(residuals_.size(), std::size_t{64})),
+        products_(times_ * times_, S(0)) {}
 
   /// Adds the next sample; false, and nothing changed, if the array has another size or the time is
   /// not later. A jump of the clock begins a new window. A window with a bad reading of a taxel is
@@ -85,10 +91,19 @@ class TaxelNoiseCalibration {
     window_.push([&](std::size_t k) { return now_[k]; }, is_new);
     if (++in_window_ == features_.options().window) {
       ++windows_;
+      std::fill(products_.begin(), products_.end(), S(0));
+      int moving = 0;
       for (std::size_t k = 0; k < now_.size(); ++k) {
         if (!is_bad_[k]) {
           variances_[k].push_back(window_.residuals(k, residuals_));
+          if (k < taxel_count() && S(0) < variances_[k].back()) {
+            add_product();
+            ++moving;
+          }
         }
+      }
+      if (moving >= 3 && times_ >= 8) {  // else chance correlates them as much
+        shared_.push_back(mean_squared_correlation(moving));
       }
     }
     return true;
@@ -129,10 +144,13 @@ class TaxelNoiseCalibration {
         noise.largest_factor = noise.largest_factor < factor ? factor : noise.largest_factor;
       }
     }
+    noise.shared = shared_.empty() ? not_a_number<S>() : shared_spread();
     noise.cause = 2 * static_cast<std::size_t>(dead) > count
                       ? "fewer than half of the taxels gave readings in range: "
                         "check bytes, range and order"
-                      : nullptr;
+                  : S(0.5) < noise.shared ? "most of what the taxels read they have in common, so "
+                                            "that it is no noise: record while nothing shakes"
+                                          : nullptr;
     const S centroid_sq =
         (mean_square_of(variances_[count]) + mean_square_of(variances_[count + 1])) / S(2);
     noise.centroid_deviation_mm = value(centroid_sq) == 0 ? S(0) : sqrt(centroid_sq);
@@ -147,6 +165,39 @@ class TaxelNoiseCalibration {
   }
 
   std::size_t taxel_count() const { return now_.size() - 2; }
+
+  /// Adds the products of a taxel's residuals at all pairs of times, of mean square 1. The sum over
+  /// the taxels has the same squares as that over the times has, of which there are fewer.
+  void add_product() {
+    S squares = S(0);
+    for (std::size_t a = 0; a < times_; ++a) {
+      squares = squares + square(residuals_[a]);
+    }
+    for (std::size_t a = 0; a < times_ && S(0) < squares; ++a) {
+      for (std::size_t b = 0; b < times_; ++b) {
+        S& product = products_[a * times_ + b];
+        product = product + residuals_[a] * residuals_[b] / squares;
+      }
+    }
+  }
+  /// Over all pairs of the taxels of `products_`.
+  S mean_squared_correlation(int taxels) const {
+    S sum = S(0);
+    for (const S& product : products_) {
+      sum = sum + square(product);
+    }
+    return (sum - S(taxels)) / S(static_cast<double>(taxels) * (taxels - 1));
+  }
+  /// From the median window. Independent noise has a squared correlation of 1 / (times - 2) by
+  /// chance, and taxels that have the share p of their variance in common add p^2.
+  S shared_spread() const {
+    using std::sqrt;
+    std::vector<S> all = shared_;
+    std::sort(all.begin(), all.end());
+    const double chance = 1 / (static_cast<double>(times_) - 2);
+    const S squared = (all[all.size() / 2] - S(chance)) / S(1 - chance);
+    return S(0) < squared ? S(sqrt(squared)) : S(0);
+  }
   double length() const { return static_cast<double>(features_.options().window); }
 
   /// Variance from the median of the windows' mean squares; NaN if there are none. It is corrected
@@ -169,6 +220,9 @@ class TaxelNoiseCalibration {
   std::vector<S> residuals_;
   std::vector<std::vector<S>> variances_;  // of the windows of each of `now_`
   std::vector<bool> is_bad_;               // in the present window
+  std::size_t times_;                      // of a window, at most 64 of them, for
+  std::vector<S> products_;                // the products of two times over the taxels
+  std::vector<S> shared_;                  // squared correlation of each window
   Index in_window_ = 0;                    // samples of the present window
   Index windows_ = 0;
 };
