@@ -85,11 +85,12 @@ void bind_wrench(py::module_& module) {
       .def_readwrite("modulus_sd_share", &Options::modulus_sd_share)
       .def_readwrite("pressure_sd_share", &Options::pressure_sd_share)
       .def_readwrite("reach_share", &Options::reach_share)
-      .def_readwrite("loose_rim", &Options::loose_rim);
+      .def_readwrite("loose_rim", &Options::loose_rim)
+      .def_readwrite("full_scale_n", &Options::full_scale_n);
   py::class_<Result>(
       module, "WrenchResult",
       "Six-axis force and moment that the object exerts on the pad, the moment about\n"
-      "the center of the base; a press has force_n[2] < 0. NaN unless ok.")
+      "the center of the base; a press has force_n[2] < 0. NaN where refused.")
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_property_readonly("force_n", [](const Result& r) { return as_tuple(r.force_n); })
@@ -105,6 +106,8 @@ void bind_wrench(py::module_& module) {
             return rows;
           },
           "6 x 6, of force in N and moment in N mm")
+      .def_readonly("pressure_mpa", &Result::pressure_mpa, "by gauge and dots together")
+      .def_readonly("pressure_sd_mpa", &Result::pressure_sd_mpa)
       .def_readonly("misfit", &Result::misfit)
       .def_readonly("marks", &Result::marks, "dots used");
   py::class_<WrenchOfDots>(module, "Wrench",

@@ -5,6 +5,7 @@
 // (tests/data/rim_marks.txt).
 #include <array>
 #include <cmath>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -45,29 +46,35 @@ struct RimScene {
   }
 };
 
+/// Up to the end of the file. Dots that the object touches are at the origin.
+inline std::vector<RimScene> read_rim_scenes(std::istream& file) {
+  std::vector<RimScene> scenes;
+  RimScene s;
+  std::size_t dots = 0, frames = 0;
+  while (file >> s.name >> s.modulus_n_per_mm >> s.cap.base_radius_mm >> s.cap.height_mm >>
+         s.cap.mooney_share >> dots >> frames) {
+    s.frames.assign(frames, {});
+    for (RimFrame& f : s.frames) {
+      file >> f.pressure_mpa;
+      for (double& part : f.load) {
+        file >> part;
+      }
+      f.dots_mm.resize(dots);
+      for (auto& p : f.dots_mm) {
+        file >> p.x >> p.y >> p.z;
+        p = p / 1e4;
+      }
+    }
+    require_data(!file.fail(), "marks near the rim are too few");
+    scenes.push_back(s);
+  }
+  return scenes;
+}
+
 inline const std::vector<RimScene>& rim_scenes() {
   static const std::vector<RimScene> all = [] {
     auto file = open_data("rim_marks.txt", "rim marks\n");
-    std::vector<RimScene> scenes;
-    RimScene s;
-    std::size_t dots = 0, frames = 0;
-    while (file >> s.name >> s.modulus_n_per_mm >> s.cap.base_radius_mm >> s.cap.height_mm >>
-           s.cap.mooney_share >> dots >> frames) {
-      s.frames.assign(frames, {});
-      for (RimFrame& f : s.frames) {
-        file >> f.pressure_mpa;
-        for (double& part : f.load) {
-          file >> part;
-        }
-        f.dots_mm.resize(dots);
-        for (auto& p : f.dots_mm) {
-          file >> p.x >> p.y >> p.z;
-          p = p / 1e4;
-        }
-      }
-      require_data(!file.fail(), "rim_marks.txt is too short");
-      scenes.push_back(s);
-    }
+    auto scenes = read_rim_scenes(file);
     require_data(scenes.size() == 8, "rim_marks.txt has other scenes");
     return scenes;
   }();

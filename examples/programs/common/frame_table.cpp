@@ -76,11 +76,11 @@ Text evidence(const Row& row) {
 Text wrench(const Row& row, int k) {
   const auto &f = row.touch.wrench.force_n, &m = row.touch.wrench.moment_n_mm;
   const double all[] = {f.x, f.y, f.z, m.x / 1000, m.y / 1000, m.z / 1000};
-  return cell_if(row.touch.wrench.ok(), all[k]);
+  return cell_if(row.touch.wrench.has_force(), all[k]);
 }
 Text wrench_sd(const Row& row, int k) {
   const double unit = k < 3 ? 1 : 1000;
-  return cell_if(row.touch.wrench.ok(), std::sqrt(row.touch.wrench.covariance(k, k)) / unit);
+  return cell_if(row.touch.wrench.has_force(), std::sqrt(row.touch.wrench.covariance(k, k)) / unit);
 }
 
 struct Column {

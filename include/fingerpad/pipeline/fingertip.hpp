@@ -213,13 +213,11 @@ class Fingertip {
     }
   }
 
-  /// Learns where the dots lie in a frame without contact, from which the first force then follows.
+  /// Learns where the dots lie in frames without contact, from which the first force then follows.
   void measure_wrench(double pressure_mpa, FingertipResult& touch) {
     touch.wrench = (*wrench_)(pressure_mpa);
-    if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact() &&
-        detail::FingertipWrench::is_free(touch.wrench)) {
-      wrench_->learn(pressure_mpa);
-      touch.wrench = touch.wrench.ok() ? touch.wrench : (*wrench_)(pressure_mpa);
+    if (touch.depth.ok() && touch.contact.ok() && !touch.contact.in_contact()) {
+      wrench_->tare(pressure_mpa, touch.wrench);
     }
   }
 

@@ -273,16 +273,25 @@ struct FingertipLookUp {
 };
 
 /// Six axes from the dots near the rim: of a printed grid, and of rows around it. Where they lie on
-/// the membrane is learnt from the first frames that touch nothing, and then kept, so that a slow
-/// touch is never taken for a free pad: after the first, a frame whose force is beyond two standard
-/// deviations is not learnt from.
+/// the membrane is learnt from frames that touch nothing: the mean of the first ones, which later
+/// ones move slowly. A slow touch is never tared away, because no later frame is learnt from whose
+/// force or moment by the first places is beyond two standard deviations, and no dot moves further
+/// than four of its own. A free pad with a part beyond four without a press, which no touch exerts,
+/// is not tared until all are within two again.
 struct FingertipWrench {
+  struct Place {
+    double arc_mm = 0, azimuth_rad = 0;
+    void approach(const fingerpad::Mark& found, double share) {
+      arc_mm += share * (found.arc_mm - arc_mm);
+      azimuth_rad += share * std::remainder(found.azimuth_rad - azimuth_rad, 2 * std::numbers::pi);
+    }
+  };
   struct Dot {
     Point2<double> px = {};  // in this frame; NaN: not found
     double sd_px = 0;
     bool touches = false;
-    double arc_mm = 0, azimuth_rad = 0;  // where it lies, from so many frames
-    int frames = 0;
+    Place first, now;
+    int frames = 0;  // learnt from, at most free_frames
   };
   static constexpr int free_frames = 16;
 
@@ -290,11 +299,12 @@ struct FingertipWrench {
   std::vector<Dot> dots;  // the printed grid, then the rows around it
   std::vector<std::uint8_t> side_touching;
   ReservedVector<fingerpad::Mark> marks;
-  double dot_sd_px;
+  double dot_sd_px, pixel_mm;
   int learnt = 0;
+  bool is_tared = true;
 
   FingertipWrench(const Camera<double>& camera, const FingertipOptions& o)
-      : wrench(camera, *o.wrench), dot_sd_px(o.dot_sd_px) {
+      : wrench(camera, *o.wrench), dot_sd_px(o.dot_sd_px), pixel_mm(camera.pitch_mm) {
     require("FingertipOptions",
             {{"dot_sd_px", o.dot_sd_px, positive}, {"side_dots", o.side_dots, within(0, 100000)}});
     side_touching.resize(static_cast<std::size_t>(o.side_dots));
@@ -339,44 +349,69 @@ struct FingertipWrench {
     }
   }
 
-  /// Learns from a frame that touches nothing.
-  void learn(double pressure_mpa) {
-    if (learnt == free_frames || !wrench.begin(pressure_mpa)) {
-      return;
-    }
-    ++learnt;
-    for (Dot& dot : dots) {
-      if (const auto found = wrench.place_in_free_picture(dot.px)) {
-        ++dot.frames;
-        const double turn =
-            std::remainder(found->azimuth_rad - dot.azimuth_rad, 2 * std::numbers::pi);
-        dot.arc_mm += (found->arc_mm - dot.arc_mm) / dot.frames;
-        dot.azimuth_rad += turn / dot.frames;
-      }
-    }
-  }
-
-  /// Whether a frame without contact may be learnt from: its force is within two standard
-  /// deviations, or too little has been learnt to tell.
-  static bool is_free(const WrenchResult& seen) {
-    const double force[] = {seen.force_n.x, seen.force_n.y, seen.force_n.z};
-    bool is_small = seen.ok();
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      is_small = is_small && square(force[k]) <= 4 * seen.covariance(k, k);
-    }
-    return is_small || seen.status == WrenchStatus::too_few_marks;
-  }
-
   /// Of the dots that nothing touches.
   WrenchResult operator()(double pressure_mpa) {
+    WrenchResult result = fit(pressure_mpa, &Dot::now);
+    result.status = result.has_force() && !is_tared ? WrenchStatus::not_tared : result.status;
+    return result;
+  }
+
+  /// Learns from a frame in which no contact is seen, if `seen` allows it; `seen` becomes what the
+  /// dots then say, if they said nothing.
+  void tare(double pressure_mpa, WrenchResult& seen) {
+    const WrenchResult by_first = learnt > free_frames ? fit(pressure_mpa, &Dot::first) : seen;
+    const bool is_first = by_first.status == WrenchStatus::too_few_marks;
+    if (by_first.has_force()) {
+      const Point3<double>&f = by_first.force_n, &m = by_first.moment_n_mm;
+      const double parts[] = {f.x, f.y, f.z, m.x, m.y, m.z};
+      const auto sds = [&](Eigen::Index k) {
+        return std::fabs(parts[k]) / std::sqrt(by_first.covariance(k, k));
+      };
+      double most = 0;
+      for (Eigen::Index k = 0; k < 6; ++k) {
+        most = (std::max)(most, sds(k));
+      }
+      const bool is_pressed = f.z < 0 && sds(2) > 2;
+      is_tared = most < 2 || (is_tared && (most < 4 || is_pressed));
+      if (!(most < 2)) {
+        return;
+      }
+    }
+    if ((by_first.has_force() || is_first) && wrench.begin(pressure_mpa)) {
+      learn();
+    }
+    seen = seen.has_force() ? seen : (*this)(pressure_mpa);
+  }
+
+ private:
+  WrenchResult fit(double pressure_mpa, Place Dot::*place) {
     marks.clear();
     for (const Dot& dot : dots) {
       if (!dot.touches && dot.frames > 0) {
+        const Place& at = dot.*place;
         marks.push_back(
-            {dot.arc_mm, dot.azimuth_rad, dot.px, dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
+            {at.arc_mm, at.azimuth_rad, dot.px, dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
       }
     }
     return wrench(marks, pressure_mpa);
+  }
+
+  void learn() {
+    learnt += learnt <= free_frames ? 1 : 0;
+    for (Dot& dot : dots) {
+      if (const auto found = wrench.place_in_free_picture(dot.px)) {
+        const bool is_later = dot.frames == free_frames;
+        const double most_mm = 4 * dot.sd_px * pixel_mm;
+        const double most_rad = most_mm / wrench.base_radius_mm();
+        dot.frames += is_later ? 0 : 1;
+        dot.now.approach(*found, 1.0 / dot.frames);
+        dot.first = is_later ? dot.first : dot.now;
+        const Place& first = dot.first;
+        dot.now = {std::clamp(dot.now.arc_mm, first.arc_mm - most_mm, first.arc_mm + most_mm),
+                   std::clamp(dot.now.azimuth_rad, first.azimuth_rad - most_rad,
+                              first.azimuth_rad + most_rad)};
+      }
+    }
   }
 };
 
