@@ -85,7 +85,8 @@ struct [[nodiscard]] AbsorptionFit {
   Absorption<S> fluid = {};                  ///< with kappa on the axis
   PadLight<S, Degree> light = {};
   /// NaN with as many samples as parameters and no given grey_noise.
-  detail::SmallMatrix<S, parameters> covariance = detail::zero_matrix<S, parameters>();
+  std::array<std::array<S, parameters>, parameters> covariance =
+      detail::zero_matrix<S, parameters>();
   S condition =
       S(0);  ///< of dF / d ln(parameter), by Frobenius norms; 6e3 for depths of 0.5, 4, 8 and 12 mm
   S residual_rms = S(0);  ///< of F, grey levels
