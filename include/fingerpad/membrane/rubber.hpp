@@ -4,11 +4,12 @@
 // The law of the rubber: what a sheet pulls with when it is stretched. Everything here is per
 // modulus and thickness, mu t, and per stress-free length. Mooney-Rivlin with one number, the share
 // m = C2 / (C1 + C2); 0 is neo-Hookean.
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v0 {
@@ -38,7 +39,7 @@ S rubber_pull(const S& along, const S& other, const S& mooney_share) {
 namespace detail::membrane {
 
 template <scalar S>
-using Matrix3 = SmallMatrix<S, 3>;
+using Matrix3 = std::array<std::array<S, 3>, 3>;
 
 /// Derivatives of rubber_pull by its two vectors.
 template <scalar S>
