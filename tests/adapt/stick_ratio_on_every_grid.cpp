@@ -2,44 +2,21 @@
 // SPDX-License-Identifier: MIT
 // Dots and flags in every kind of grid: the same result to the bit. Points of two coordinates are
 // in the image in every type, also where p[2] compiles.
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <opencv2/core.hpp>
 #include <type_traits>
-#include <vector>
-#if __has_include(<xtensor/containers/xtensor.hpp>)
-#include <xtensor/containers/xarray.hpp>
-#include <xtensor/containers/xtensor.hpp>
-#include <xtensor/views/xview.hpp>
-#else
-#include <xtensor/xarray.hpp>
-#include <xtensor/xtensor.hpp>
-#include <xtensor/xview.hpp>
-#endif
 
-#include "fingerpad/adapt/eigen.hpp"
-#include "fingerpad/adapt/mdspan.hpp"
-#include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/adapt/xtensor.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
-#include "support/foreign_image.hpp"
+#include "support/every_grid.hpp"
 #include "support/slipping_dots.hpp"
-#include "support/test_mdspan.hpp"
 
 using namespace fingerpad;
 
 namespace {
 
 constexpr Index n = 21;
-constexpr int size = 21;
 constexpr std::size_t cells = 21 * 21;
-
-template <class T>
-using RowMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-template <class T>
-using ColMajor = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Three frames; the first two have been processed.
 struct Case {
@@ -88,50 +65,26 @@ struct Case {
   bool reads_dots(const Dots& from) const {
     return agrees(from, contact);
   }
-  template <class Contact>
-  bool reads_flags(const Contact& flags) const {
-    return agrees(dots, flags);
-  }
-  template <class Grid, class Make>
-  static Grid filled(Grid grid, const Make& make) {
-    const auto view = as_view(grid);
-    for (Index i = 0; i < n; ++i) {
-      for (Index j = 0; j < n; ++j) {
-        view(i, j) = make(i, j);
-      }
-    }
-    return grid;
-  }
 };
 
 }  // namespace
 
-TEST_CASE("dots that stick are read from every grid", "[adapt][stick_ratio]") {
+TEMPLATE_TEST_CASE("dots that stick are read from every grid, as points of every type",
+                   "[adapt][stick_ratio]",
+                   Point2<float>,
+                   Eigen::Vector2f,
+                   cv::Vec2f,
+                   cv::Point2f,
+                   cv::Point2d,
+                   (std::array<float, 2>)) {
+  using P = TestType;
+  using X = std::remove_cvref_t<decltype(point_traits<P>::x(std::declval<const P&>()))>;
   const Case c;
-  const auto as = [&](auto point) {
-    using P = decltype(point);
-    using X = std::remove_cvref_t<decltype(point_traits<P>::x(point))>;
-    return [&](Index i, Index j) {
-      return P{static_cast<X>(c.dots(i, j).x), static_cast<X>(c.dots(i, j).y)};
-    };
-  };
-  CHECK(c.reads_dots(c.dots));
-  CHECK(c.reads_dots(Case::filled(RowMajor<Eigen::Vector2f>(n, n), as(Eigen::Vector2f()))));
-  CHECK(c.reads_dots(Case::filled(ColMajor<Eigen::Vector2f>(n, n), as(Eigen::Vector2f()))));
-  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Vec2f>(size, size), as(cv::Vec2f()))));
-  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Point2f>(size, size), as(cv::Point2f()))));
-  CHECK(c.reads_dots(Case::filled(cv::Mat_<cv::Point2d>(size, size), as(cv::Point2d()))));
-  CHECK(c.reads_dots(
-      Case::filled(test::ForeignImage<std::array<float, 2>>(n, n), as(std::array<float, 2>()))));
-  const std::array<std::size_t, 2> shape = {21, 21};
-  CHECK(c.reads_dots(Case::filled(xt::xtensor<cv::Point2f, 2>(shape), as(cv::Point2f()))));
-  const auto mapping =
-      test::LayoutStride::right(static_cast<test::MdIndex>(n), static_cast<test::MdIndex>(n));
-  CHECK(c.reads_dots(test::TestMdspan<const Point2<float>>(c.dots.cells.data(), mapping)));
-  std::vector<Point2<float>> memory(4 * cells);
-  const StridedView<Point2<float>> backward(&memory.back(), n, n, -4 * n, -2);
-  CHECK(c.reads_dots(Case::filled(backward, as(Point2<float>()))));
-  CHECK(c.reads_dots(LazyView(n, n, [&](Index i, Index j) { return c.dots(i, j); })));
+  test::Image<P> points(n, n);
+  for (std::size_t k = 0; k < cells; ++k) {
+    points.cells[k] = P{static_cast<X>(c.dots.cells[k].x), static_cast<X>(c.dots.cells[k].y)};
+  }
+  test::from_every_grid<P>(points, [&](const auto& from) { CHECK(c.reads_dots(from)); });
 }
 
 TEST_CASE("dots in tensors and vectors are read without a copy", "[adapt][stick_ratio]") {
@@ -160,17 +113,30 @@ TEST_CASE("dots in tensors and vectors are read without a copy", "[adapt][stick_
   CHECK(c.reads_dots(grid_of(c.dots.cells, n, n)));
 }
 
-TEST_CASE("flags of contact are read from every grid", "[adapt][stick_ratio]") {
+TEMPLATE_TEST_CASE("flags of contact are read from every grid, as cells of every type",
+                   "[adapt][stick_ratio]",
+                   bool,
+                   std::uint8_t,
+                   int,
+                   float,
+                   double,
+                   Touch) {
+  using T = TestType;
   const Case c;
-  const auto flag = [&](auto yes, auto no) {
-    return [&c, yes, no](Index i, Index j) { return c.contact(i, j) != 0 ? yes : no; };
-  };
-  CHECK(c.reads_flags(Case::filled(RowMajor<bool>(n, n), flag(true, false))));
-  CHECK(c.reads_flags(Case::filled(ColMajor<float>(n, n), flag(-1.0F, 0.0F))));
-  CHECK(c.reads_flags(
-      Case::filled(cv::Mat_<std::uint8_t>(size, size), flag(std::uint8_t(255), std::uint8_t(0)))));
-  CHECK(c.reads_flags(Case::filled(test::ForeignImage<double>(n, n), flag(1.0, test::nan))));
-  CHECK(c.reads_flags(LazyView(n, n, flag(Touch::contact, Touch::unknown))));
-  const std::array<std::size_t, 2> shape = {21, 21};
-  CHECK(c.reads_flags(Case::filled(xt::xtensor<int, 2>(shape), flag(3, 0))));
+  T yes = T(1), no = T(0);
+  if constexpr (std::is_same_v<T, Touch>) {
+    yes = Touch::contact;
+    no = Touch::unknown;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    yes = T(-1);
+    no = static_cast<T>(test::nan);
+  } else if constexpr (!std::is_same_v<T, bool>) {
+    yes = T(255);
+  }
+  // a vector of bool keeps bits
+  test::Image<std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>> flags(n, n, no);
+  for (std::size_t k = 0; k < cells; ++k) {
+    flags.cells[k] = c.contact.cells[k] != 0 ? yes : no;
+  }
+  test::from_every_grid<T>(flags, [&](const auto& from) { CHECK(c.agrees(c.dots, from)); });
 }

@@ -698,9 +698,8 @@ TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one
   constexpr auto block = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
   Pad pad;
   pad.camera.pixel_aspect = 1.2;
-  const detail::DepthPolynomial<S> rows(pad.camera, pad.fluid,
-                                        pad.base_radius_mm() / pad.camera.pitch_mm + 1,
-                                        0.8 * pad.scattering);
+  const detail::DepthPolynomial<S> rows(
+      pad.camera, pad.fluid, pad.base_radius_mm() / pad.camera.pitch_mm + 1, 0.8 * pad.scattering);
   test::Random random(31);
   const S odd[] = {Limits::quiet_NaN(),
                    Limits::infinity(),

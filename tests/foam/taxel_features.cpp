@@ -503,8 +503,9 @@ TEST_CASE("taxel features: readings in any number", "[taxel_features]") {
     auto finger = features;
     FingerSample<double> sample;
     for (int k = 0; k < 20; ++k) {
-      sample = finger(array<decltype(cell)>(3, 5, [&](Index i, Index j) { return reading(k, i, j); }),
-                      k * period_s);
+      sample =
+          finger(array<decltype(cell)>(3, 5, [&](Index i, Index j) { return reading(k, i, j); }),
+                 k * period_s);
     }
     CHECK(sample.location == expected.location);
     CHECK(sample.waves == expected.waves);

@@ -247,13 +247,17 @@ TEST_CASE("frames of the free pad set the threshold of contact") {
     CHECK(std::abs(from_frame - from_shape) < 0.1 * from_shape);
   }
   SECTION("none there") {
-    CHECK(ends_with(work.complaint(), "free: holds no frames"));
+    CHECK(ends_with(work.complaint(),
+                    "free: holds no frames; put the pictures there, as 000000.png, "
+                    "000001.png, ..."));
   }
   SECTION("a frame of another size") {
     cv::imwrite((work.recording() / "free" / "0.png").string(),
                 cv::Mat(100, 120, CV_8UC3, cv::Scalar(1, 2, 3)));
-    CHECK(ends_with(work.complaint(),
-                    "free/0.png: is 120 x 100 px, but the reference is 480 x 480 px"));
+    CHECK(
+        ends_with(work.complaint(),
+                  "free/0.png: is 120 x 100 px, but the reference is 480 x 480 px; take both with "
+                  "the same setting of the camera"));
   }
 }
 
@@ -262,7 +266,9 @@ TEST_CASE("files that cannot be used are refused with their name") {
   SECTION("no frames") {
     fs::remove_all(work.recording() / "frames");
     fs::create_directory(work.recording() / "frames");
-    CHECK(ends_with(work.complaint(), "frames: holds no frames"));
+    CHECK(ends_with(work.complaint(),
+                    "frames: holds no frames; put the pictures there, as "
+                    "000000.png, 000001.png, ..."));
   }
   SECTION("no folder of frames") {
     fs::remove_all(work.recording() / "frames");
@@ -277,8 +283,10 @@ TEST_CASE("files that cannot be used are refused with their name") {
   SECTION("a frame of another size") {
     cv::imwrite((work.recording() / "frames" / "000001.png").string(),
                 cv::Mat(100, 120, CV_8UC3, cv::Scalar(1, 2, 3)));
-    CHECK(ends_with(work.complaint(),
-                    "frames/000001.png: is 120 x 100 px, but the reference is 480 x 480 px"));
+    CHECK(ends_with(
+        work.complaint(),
+        "frames/000001.png: is 120 x 100 px, but the reference is 480 x 480 px; take both with "
+        "the same setting of the camera"));
   }
   SECTION("a grey frame") {
     cv::imwrite((work.recording() / "frames" / "000001.png").string(),

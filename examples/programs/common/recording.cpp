@@ -103,7 +103,7 @@ FrameSource FrameSource::of_folder(const fs::path& folder, PictureFormat format)
     }
   }
   if (source.files_.empty()) {
-    fail(folder, "holds no frames");
+    fail(folder, "holds no frames; put the pictures there, as 000000.png, 000001.png, ...");
   }
   const bool decimals = have_decimals(source.files_);
   std::sort(source.files_.begin(), source.files_.end(), [&](const fs::path& a, const fs::path& b) {
@@ -181,7 +181,7 @@ cv::Mat expects_size(const FrameSource& frames, cv::Mat image, cv::Size size) {
   if (!image.empty() && image.size() != size) {
     fail(frames.last_file(), "is " + size_of(image) + ", but the reference is " +
                                  std::to_string(size.width) + " x " + std::to_string(size.height) +
-                                 " px");
+                                 " px; take both with the same setting of the camera");
   }
   return image;
 }

@@ -42,7 +42,8 @@ const char* const about =
     "nothing behind.\n"
     "--check writes nothing; it lists the problems of the recording.\n"
     "--camera and --video show results live while the pad is touched; they need sensor.json,\n"
-    "reference.png and reference_depth.tiff in RECORDING. Press q or Esc to quit, r to begin and to\n"
+    "reference.png and reference_depth.tiff in RECORDING. Press q or Esc to quit, r to begin and "
+    "to\n"
     "end a recording under DIR of --record.";
 
 void add_live_options(CLI::App& app, replay::LiveOptions& live) {

@@ -33,7 +33,7 @@ template <class G> concept has_cells_in_a_row = !has_size_members<G> && requires
   g.data() + g.size();
   g[0];
 };
-template <class G> concept has_bits_in_a_row = !has_size_members<G> && requires(G& g) {
+template <class G> concept has_bits_in_a_row = !has_size_members<G> && requires(G & g) {
   g.flip();  // std::vector<bool>
   g[0];
 };

@@ -23,7 +23,7 @@ LiveFrames LiveFrames::of_camera(int number, cv::Size size, const PictureFormat&
     frames.camera_.open(number);
   }
   if (!frames.camera_.isOpened()) {
-    fail(frames.name_, "cannot be opened");
+    fail(frames.name_, "cannot be opened; try another number, or close the program that uses it");
   }
   frames.camera_.set(cv::CAP_PROP_FRAME_WIDTH, size.width);
   frames.camera_.set(cv::CAP_PROP_FRAME_HEIGHT, size.height);

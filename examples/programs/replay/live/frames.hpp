@@ -37,7 +37,7 @@ class LiveFrames {
   // These are for the last frame.
   int number() const { return number_; }
   const cv::Mat& stored() const { return stored_; }  ///< as the camera gave it
-  double time_s() const;  ///< since the first one
+  double time_s() const;                             ///< since the first one
   Clock::time_point arrival() const { return arrival_; }
 
  private:

@@ -95,8 +95,8 @@ class Window {
   static constexpr const char* name = "fingerpad";
 };
 
-/// Turns frames into pictures. `show` receives each picture and its frame number and returns the key
-/// that was pressed: q ends the loop, r begins or ends a recording.
+/// Turns frames into pictures. `show` receives each picture and its frame number and returns the
+/// key that was pressed: q ends the loop, r begins or ends a recording.
 Log play(const Options& options,
          Recording& pad,
          LiveFrames& frames,
@@ -189,7 +189,8 @@ int run_live(const Options& options, const LiveOptions& live) {
   Recording pad = open_pad(options.recording, options.sensor);
   if (pad.sensor.dots_only) {
     fail(options.recording,
-         "has dots only, and live pictures show depth: record a video, write { \"video\": \"FILE\" } "
+         "has dots only, and live pictures show depth: record a video, write { \"video\": \"FILE\" "
+         "} "
          "to sensor.json, and run replay with --out");
   }
   const cv::Size size = pad.reference.size();

@@ -78,7 +78,8 @@ void paint_dots(Canvas& canvas,
 }
 
 cv::Mat Painter::contact(const Scene& scene, const DotGrid& initial_px) const {
-  Sheet sheet("Where the object touches, and dots", caption(scene.frame, scene.time_s), scene.image.size(), 92);
+  Sheet sheet("Where the object touches, and dots", caption(scene.frame, scene.time_s),
+              scene.image.size(), 92);
   paint_image(sheet.canvas, sheet.place.box, scene.image, brightest_);
   paint_dots(sheet.canvas, sheet.place, scene.dots, initial_px);
   paint_outline(sheet.canvas, sheet.place, scene.contact_mask, 2);

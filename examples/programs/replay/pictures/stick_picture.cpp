@@ -96,7 +96,8 @@ std::string words_of(const fingerpad::FingertipResult& touch) {
 }  // namespace
 
 cv::Mat stick_picture(const Scene& scene, double brightest) {
-  Sheet sheet("Dots that stick, and dots that slip", caption(scene.frame, scene.time_s), scene.image.size(), 76);
+  Sheet sheet("Dots that stick, and dots that slip", caption(scene.frame, scene.time_s),
+              scene.image.size(), 76);
   Canvas& canvas = sheet.canvas;
   const Place& place = sheet.place;
   paint_image(canvas, place.box, scene.image, (std::max)(brightest, 1.0));
