@@ -265,6 +265,7 @@ class StickRatio {
     stored_count_ = 0;
     center_ = detail::missing_point<S>();
     result_ = {};
+    std::fill(in_order_.begin(), in_order_.end(), detail::missing_point<S>());
     std::fill(states_.begin(), states_.end(), DotState::none);
     std::fill(slips_.begin(), slips_.end(), no_slip());
   }
@@ -353,9 +354,12 @@ class StickRatio {
   /// Searches the reference, answers by it, and stores the frame unless the dots rest.
   StickStatus compare(const S& reference_sq) {
     const S moved_sq = stored_count_ > 0 ? furthest_sq_from(stored(0)) : S(-1);
-    result_.far_apart = 4 * value(furthest_sq_from(in_order_.data())) > value(pitch_sq_);
-    if (value(moved_sq) > 4 * value(reference_sq) &&
-        detail::is_renumbered(frame_, in_order_, pitch_sq_)) {
+    for (Index k = 0; k < detail::size_of(now_); ++k) {  // of those in contact, the ones in place
+      frame_.found[k] = states_[k] == DotState::none ? frame_.found[k] : now_[k];
+    }
+    result_.far_apart =
+        value(pitch_sq_) > 0 && 4 * value(furthest_sq_from(in_order_.data())) > value(pitch_sq_);
+    if (result_.far_apart && detail::is_renumbered(frame_, in_order_, pitch_sq_)) {
       return StickStatus::not_in_order;
     }
     std::copy(frame_.found.begin(), frame_.found.end(), in_order_.begin());
