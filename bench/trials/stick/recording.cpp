@@ -3,11 +3,8 @@
 #include "recording.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <fstream>
 
-#include "common/csv_cells.hpp"
-#include "common/failure.hpp"
+#include "common/table.hpp"
 
 namespace stick_table {
 namespace {
@@ -19,24 +16,20 @@ template <class Take>
 void read(const std::filesystem::path& file,
           const std::vector<std::string>& columns,
           const Take& take) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  const auto header = replay::cells_of(line);
+  replay::Table table(file, replay::Table::Lines::may_end_early);
   std::vector<std::size_t> at;
   for (const std::string& column : columns) {
+    const auto& header = table.header();
     at.push_back(
         static_cast<std::size_t>(std::find(header.begin(), header.end(), column) - header.begin()));
     if (at.back() == header.size()) {
-      replay::fail(file, "has no column " + column);
+      table.refuse("has no column " + column);
     }
   }
   std::vector<double> values(columns.size());
-  while (std::getline(in, line)) {
-    const auto cells = replay::cells_of(line);
+  while (table.next()) {
     for (std::size_t k = 0; k < at.size(); ++k) {
-      values[k] = at[k] < cells.size() && !cells[at[k]].empty() ? std::atof(cells[at[k]].c_str())
-                                                                : test::nan;
+      values[k] = table.number_or_nan(at[k]);
     }
     take(values);
   }
