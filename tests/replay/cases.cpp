@@ -296,6 +296,21 @@ TEST_CASE("cases: free frames that show a contact, all or some") {
   CHECK(recording.slips() == -1);
 }
 
+TEST_CASE("cases: frames that are not like the free pad say so, and are no slip") {
+  const Change other_lamp = lit([](int, double x, double) { return 0.4 + 1.2 * x / width; });
+  Recording recording;
+  recording.write("free", gel(Kind::free));
+  recording.write("frames", gel(Kind::slip), [&](const cv::Mat& frame, int k) {
+    return k == 4 || k == 11 ? other_lamp(frame, k) : frame;
+  });
+  CHECK(recording.slips() >= 15);
+  CHECK(recording.slips() <= 17);  // across a gap the travel is less certain
+  for (const test::Line& line : recording.table("slide.csv")) {
+    const bool is_other = line.at("frame") == "4" || line.at("frame") == "11";
+    CHECK((line.at("slide_status") == "not of this pad") == is_other);
+  }
+}
+
 TEST_CASE("cases: channels in another order than those of the free pad are told") {
   Recording recording;
   recording.write("free", gel(Kind::free));

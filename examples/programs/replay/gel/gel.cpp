@@ -48,7 +48,9 @@ void GelReplay::operator()(int frame,
   GelScene scene{frame, time_s, image, cv::Mat_<uchar>(image.size()), dots, {}};
   scene.seen = step_(image, dots, scene.contact_mask);
   write_row(scene);
-  touching_ += scene.seen.contact.in_contact() ? 1 : 0;
+  const bool is_known = scene.seen.contact.ok();
+  touching_ += is_known && scene.seen.contact.in_contact() ? 1 : 0;
+  unlike_ += is_known ? 0 : 1;
   if (scene.seen.slide.alarm && !slip_) {
     slip_ = frame;
   }
@@ -62,7 +64,8 @@ void GelReplay::write_row(const GelScene& row) {
   const GelFrame& seen = row.seen;
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
          << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
-         << name_of(seen.slide.status) << ',' << seen.slide.dots << ','
+         << (seen.contact.ok() ? name_of(seen.slide.status) : name_of(seen.contact.status)) << ','
+         << seen.slide.dots << ','
          << cell_of(seen.slide.slide_px.x) << ',' << cell_of(seen.slide.slide_px.y) << ','
          << cell_of(seen.slide.slide) << ',' << cell_of(seen.slide.lost) << ','
          << cell_of(seen.slide.recoil) << ',' << cell_of(seen.slide.evidence) << ','
@@ -84,6 +87,9 @@ void GelReplay::print_summary() const {
                 finding.what.c_str(), finding.remedy.c_str());
   }
   std::printf("contact      in %d frames\n", touching_);
+  if (unlike_ > 0) {
+    std::printf("cannot tell  in %d frames: most of the picture differs from the free pad\n", unlike_);
+  }
   if (slip_) {
     std::printf("slip         first detected in frame %d\n", *slip_);
   } else {

@@ -39,6 +39,7 @@ class GelReplay {
   std::filesystem::path file_;
   std::ofstream table_;
   int touching_ = 0;         ///< frames
+  int unlike_ = 0;           ///< frames that are not of this pad
   std::optional<int> slip_;  ///< first frame with an alarm
 };
 

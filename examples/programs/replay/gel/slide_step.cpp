@@ -50,7 +50,12 @@ GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Ma
   GelFrame seen;
   const auto start = std::chrono::steady_clock::now();
   seen.contact = contact_(image);
-  seen.slide = slide_(contact_.imprint(), contact_.mask(), dots);
+  if (seen.contact.ok()) {
+    last_ = slide_(contact_.imprint(), contact_.mask(), dots);
+  } else {  // what it shows is no contact: the slide stays
+    last_.status = fingerpad::SlideStatus::no_edge;
+  }
+  seen.slide = last_;
   const auto end = std::chrono::steady_clock::now();
   ms_.push_back(std::chrono::duration<double, std::milli>(end - start).count());
   mask.create(image.size());

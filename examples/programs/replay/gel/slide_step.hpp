@@ -35,7 +35,8 @@ class SlideStep {
             double dot_px,
             bool bright_dots = false);
 
-  /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere.
+  /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere. A frame that is not
+  /// of this pad keeps the slide of the one before.
   GelFrame operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask);
   /// Median time of contact and slide over the frames so far.
   double median_ms() const;
@@ -44,6 +45,7 @@ class SlideStep {
   fingerpad::GelOptions options_;
   fingerpad::GelContact contact_;
   fingerpad::GelSlide slide_;
+  fingerpad::SlideResult last_;
   fingerpad::FrictionLimit<> limit_;
   std::vector<double> ms_;
 };
