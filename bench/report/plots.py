@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The report's pictures."""
 import math
+import re
 
 import matplotlib
 
@@ -103,6 +104,29 @@ def pareto(title, rows, path):
     number_points(axes, points, hollow, [colour for _, colour in names])
     figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
+
+
+def peers(tables, path):
+    """A panel for each table of peers.md: time against error, from clean to the worst conditions."""
+    sections = re.findall(r"### (.+?)\n(.+?)(?=\n### |\Z)", tables, re.S)
+    figure, panels = plt.subplots(len(sections), 1, figsize=(8, 2.3 * len(sections)))
+    for axes, (title, text) in zip(panels, sections):
+        rows = [[c.strip() for c in line.strip("|").split("|")] for line in text.splitlines()
+                if line.startswith("|") and not line.startswith(("|--", "| Method"))]
+        for name, ms, *cells in rows:
+            colour = OURS if name.startswith("`") else YARDSTICK
+            errors = [float(m[0]) for m in (re.match(r"[\d.]+", c) for c in cells) if m]
+            lost = [float(m[1]) for m in (re.search(r"; ([\d.e+]+) %", c) for c in cells) if m]
+            few = max(lost, default=0) < 5 and len(errors) == len(cells)
+            axes.plot([float(ms)] * 2, [min(errors), max(errors)], color=colour, lw=1)
+            axes.plot(float(ms), errors[0], "o", color=colour, mfc=colour if few else "white", ms=6)
+            axes.annotate(name.replace("`", ""), (float(ms), errors[0]), xytext=(6, -10 if name == "the same, from the free pad" else 4),
+                          textcoords="offset points", fontsize=7, color=colour)
+        axes.set_title(title, loc="left", weight="bold")
+        axes.set(xscale="log", yscale="log", ylabel="error, px")
+        axes.margins(x=0.3, y=0.25)
+    panels[-1].set_xlabel("time of a frame, ms (dot: clean; line: all conditions; hollow: over 5 % lost in one)")
+    save(figure, path)
 
 
 def summary(methods, path):
