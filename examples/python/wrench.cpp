@@ -86,6 +86,7 @@ void bind_wrench(py::module_& module) {
       .def_readwrite("pressure_sd_share", &Options::pressure_sd_share)
       .def_readwrite("reach_share", &Options::reach_share)
       .def_readwrite("loose_rim", &Options::loose_rim)
+      .def_readwrite("thickness_mm", &Options::thickness_mm)
       .def_readwrite("full_scale_n", &Options::full_scale_n);
   py::class_<Result>(
       module, "WrenchResult",

@@ -214,6 +214,94 @@ TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   CHECK(worst < 0.06);
 }
 
+namespace {
+
+/// A clamped sheet leaves its rim at the mould's angle. With tension T and bending stiffness D, its
+/// distance w from the membrane that does not bend, over the arc s, follows D d^4w/ds^4 =
+/// T d^2w/ds^2 with w(0) = 0, w'(0) the angle between the two, and w bounded:
+///   w(s) = angle l (1 - exp(-s / l)),   l = sqrt(D / T).
+RimScene bent(RimScene scene, const std::vector<Mark>& marks, double layer_mm) {
+  const auto& cap = scene.cap;
+  const double mould_rad = 2 * std::atan(cap.height_mm / cap.base_radius_mm);
+  for (test::RimFrame& frame : scene.frames) {
+    // the wall's angle at the rim, from chords to the outermost dots: harmonics up to the second
+    using Harmonics = Eigen::Matrix<double, 6, 1>;
+    const auto basis = [](double azimuth, double arc_mm) {
+      Harmonics b;
+      b << 1, std::cos(azimuth), std::sin(azimuth), std::cos(2 * azimuth), std::sin(2 * azimuth),
+          arc_mm;
+      return b;
+    };
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Harmonics right = Harmonics::Zero();
+    for (std::size_t k = 0; k < marks.size(); ++k) {
+      const auto& at = frame.dots_mm[k];
+      if (marks[k].arc_mm > 0 && marks[k].arc_mm < 0.2 * cap.base_radius_mm) {
+        const Harmonics b = basis(marks[k].azimuth_rad, marks[k].arc_mm);
+        normal += b * b.transpose();
+        right += std::atan2(at.z, cap.base_radius_mm - std::hypot(at.x, at.y)) * b;
+      }
+    }
+    const Harmonics wall = normal.ldlt().solve(right);
+    for (std::size_t k = 0; k < marks.size(); ++k) {
+      const double arc = marks[k].arc_mm, azimuth = marks[k].azimuth_rad;
+      Harmonics lift = basis(azimuth, 0).cwiseProduct(-layer_mm * wall);
+      lift[0] += layer_mm * mould_rad;
+      // further in, a membrane that is set off at its rim: harmonics fall as those of Laplace
+      const double rho = cap.rho_mm(arc) / cap.base_radius_mm;
+      const double off = (lift[0] + rho * (lift[1] + lift[2]) + rho * rho * (lift[3] + lift[4])) *
+                         (1 - std::exp(-arc / layer_mm));
+      const double angle = wall.dot(basis(azimuth, 0)) * (1 - arc / cap.arc_mm());
+      frame.dots_mm[k] +=
+          off * Point3<double>{std::sin(angle) * std::cos(azimuth),
+                               std::sin(angle) * std::sin(azimuth), std::cos(angle)};
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("wrench: a sheet that bends at its clamp needs a loose rim, and its thickness",
+          "[wrench]") {
+  struct Way {
+    bool is_loose;
+    double told;  // of the thickness
+  };
+  constexpr std::array<Way, 5> ways = {
+      Way{false, 1}, {true, 0}, {true, 1}, {true, 0.8}, {true, 1.2}};
+  for (const double layer_mm : {0.47, 0.94}) {  // of two sheets of 0.5 mm, of one of 1 mm
+    std::array<double, ways.size()> error = {};
+    for (const char* name : {"drag", "two_balls", "bowl", "foam"}) {
+      const RimScene& flat = scene(name);
+      Wrench<> places(flat.camera(), SeenRim::options_of(flat, true));
+      REQUIRE(places.begin(flat.frames[0].pressure_mpa));
+      std::vector<Mark> marks;
+      for (const auto& dot : flat.frames[0].dots_mm) {
+        const auto mark = places.place_in_free_picture(pixel_of(flat.camera(), dot));
+        marks.push_back(mark ? *mark : Mark{.azimuth_rad = std::atan2(dot.y, dot.x)});
+      }
+      const RimScene s = bent(flat, marks, layer_mm);
+      for (std::size_t way = 0; way < ways.size(); ++way) {
+        auto options = SeenRim::options_of(s, ways[way].is_loose);
+        options.thickness_mm = ways[way].told * layer_mm / 0.94;
+        SeenRim rim(s, options, 0.02, 5);
+        for (std::size_t k = 1; k < s.frames.size(); ++k) {
+          const auto result = rim.fit(k);
+          CAPTURE(name, k, way, name_of(result.status));
+          REQUIRE(is_finite(result.force_n.z));
+          error[way] += errors(result, s.frames[k].load)[1] / s.largest()[1] / 12;
+        }
+      }
+    }
+    CAPTURE(layer_mm, error[0], error[1], error[2], error[3], error[4]);
+    CHECK(error[2] < 0.09 * layer_mm);
+    CHECK((std::max)(error[3], error[4]) < 0.13 * layer_mm);
+    CHECK(error[1] > 3 * error[2]);
+    CHECK(error[0] > 2.5 * error[1]);
+  }
+}
+
 TEST_CASE("wrench: a scene that is turned", "[wrench]") {
   const RimScene& s = scene("two_balls");
   SeenRim rim(s, SeenRim::options_of(s, false), 0, 1);
@@ -301,6 +389,7 @@ TEST_CASE("wrench: bad parameters are refused by name", "[wrench]") {
         "WrenchOptions: modulus_n_per_mm = 0, must be finite and > 0");
   CHECK(said({.reach_share = 0.9}) == "WrenchOptions: reach_share = 0.9, must be in (0, 0.7]");
   CHECK(said({.max_marks = 3}) == "WrenchOptions: max_marks = 3, must be in [20, 100000]");
+  CHECK(said({.thickness_mm = -1}) == "WrenchOptions: thickness_mm = -1, must be finite and >= 0");
   CHECK(said({.full_scale_n = -1}) == "WrenchOptions: full_scale_n = -1, must be finite and >= 0");
   CHECK(said({.cap = {.height_mm = 0}}) == "StressFreeCap: height_mm = 0, must be finite and > 0");
 }

@@ -49,6 +49,7 @@ struct WrenchOptions {
       0.002;                  ///< noise of the gauge, of the pressure, in [0, 1]; 1: no gauge
   double reach_share = 0.53;  ///< dots are used so far inward, of the base radius, in (0, 0.7]
   bool loose_rim = true;      ///< the rim may be set off along the normal, as a sheet is that bends
+  double thickness_mm = 0;    ///< of the membrane, >= 0, for the bend of a loose rim; 0: not known
   double outlier_sd = 4;      ///< residuals beyond count linearly, > 0
   Index max_marks = 400;      ///< in [20, 100000]; what comes after is not used
   /// Press that is measured, N, >= 0, by which `uncertain` is judged; 0: what the pressure exerts
@@ -65,6 +66,7 @@ inline std::string check(const WrenchOptions& o) {
                       {"modulus_sd_share", o.modulus_sd_share, within(0, 1)},
                       {"pressure_sd_share", o.pressure_sd_share, within(0, 1)},
                       {"reach_share", o.reach_share, {.min = 0, .max = 0.7, .above_min = true}},
+                      {"thickness_mm", o.thickness_mm, not_negative},
                       {"outlier_sd", o.outlier_sd, positive},
                       {"max_marks", o.max_marks, within(20, 100000)},
                       {"full_scale_n", o.full_scale_n, not_negative}});
@@ -272,6 +274,14 @@ class Wrench {
     std::fill(centre_.begin(), centre_.end(), 0.0);
     centre_[0] = rim->stretch * std::cos(rim->slope_rad);
     centre_[2 * annulus_.terms()] = rim->stretch * std::sin(rim->slope_rad);
+    if (options_.loose_rim && options_.thickness_mm > 0) {
+      // a clamped sheet leaves at the mould's angle: sqrt(D / T) of the angle, D = mu t^3 / 3
+      const double radius_mm = options_.cap.base_radius_mm;
+      const double mould_rad = 2 * std::atan(options_.cap.height_mm / radius_mm);
+      const double tension = load * radius_mm / (2 * std::sin(rim->slope_rad));  // per mu t
+      centre_[3 * annulus_.terms()] =
+          (mould_rad - rim->slope_rad) * options_.thickness_mm / std::sqrt(3 * tension);
+    }
     centre_.back() = load;
     restart();
     annulus_.march(centre_);
