@@ -321,20 +321,23 @@ TEST_CASE("the rim is the part of the pad up to a fifth of its depth", "[referen
   for (Index i = 0; i < reference.rows; ++i) {
     reference.depth_mm.insert(reference.depth_mm.end(), {10, 2, 2.01, 0, test::nan});
   }
-  reference.rim_green = 100;
-  const auto changes = [&](std::array<int, 5> light) {
+  reference.green.assign(reference.depth_mm.size(), 100);
+  const auto changes = [&](std::array<int, 5> light, double expected = 1) {
     Image<double> frame(reference.rows, reference.cols);
     for (Index i = 0; i < reference.rows; ++i) {
       std::copy(light.begin(), light.end(), &frame(i, 0));
     }
-    return detail::Rim(reference).has_changed(as_view(frame), as_view(frame), GreyScale{});
+    return detail::Rim(reference).has_changed(as_view(frame), as_view(frame), GreyScale{},
+                                              expected);
   };
   CHECK_FALSE(changes({50, 100, 50, 100, 50}));  // only beside it
   CHECK_FALSE(changes({50, 104, 50, 105, 50}));
   CHECK(changes({100, 50, 100, 100, 100}));
   CHECK(changes({100, 100, 100, 50, 100}));
   CHECK_FALSE(changes({100, 100, 100, 255, 100}));  // half of it is lit
-  reference.rows = 31;                              // 62 pixels tell nothing
+  CHECK(changes({50, 90, 50, 90, 50}));
+  CHECK_FALSE(changes({50, 90, 50, 90, 50}, 0.9));
+  reference.rows = 31;  // 62 pixels tell nothing
   CHECK_FALSE(changes({100, 50, 100, 50, 100}));
 }
 

@@ -26,7 +26,10 @@ Text whole_if(bool known, fingerpad::Index value) {
 Text depth_status(const Row& row) {
   const auto light = row.touch.neighbour_light;
   const Text words = name_of(row.touch.depth.ok() ? light : row.touch.depth.status);
-  return !row.has_depth ? "" : words == "ok" && row.compressed ? compressed : words;
+  return !row.has_depth                                ? ""
+         : words == "ok" && row.compressed             ? compressed
+         : words == "ok" && row.touch.light_in_doubt() ? "light has changed"
+                                                       : words;
 }
 
 Text contact_status(const Row& row) {

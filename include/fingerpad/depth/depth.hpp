@@ -94,6 +94,13 @@ class DepthEstimator {
     }
   }
 
+  /// The light of the frames that follow, over that of the reference (depth/free_light.hpp): both
+  /// gains finite and > 0.
+  void set_light(const LightGains& gains) {
+    light_ = gains;
+    colours_.set_light(gains);
+  }
+
   /// Depth of a frame in mm from its red and green channels; NaN where there is none.
   template <grid Red, grid Green, class Depth>
   DepthResult operator()(const Red& red, const Green& green, Depth&& depth_mm) {
@@ -134,8 +141,9 @@ class DepthEstimator {
         detail::store_row(status_.data(), as_view(status), i);
       }
     }
-    result.status = rim_.has_changed(from_red, from_green, scale) ? FrameStatus::not_of_this_pad
-                                                                  : FrameStatus::ok;
+    result.status = rim_.has_changed(from_red, from_green, scale, light_.green)
+                        ? FrameStatus::not_of_this_pad
+                        : FrameStatus::ok;
     return result;
   }
 
@@ -253,6 +261,7 @@ class DepthEstimator {
   Index cols_;
   detail::PadArea pad_;
   std::optional<GreyScale> scale_;
+  LightGains light_;
   detail::ColourRows<S> colours_;
   detail::DepthPolynomial<S> solver_;
   detail::Rim rim_;

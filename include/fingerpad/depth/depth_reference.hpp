@@ -60,8 +60,8 @@ struct DepthReference {
                               ///< <= 0 or NaN is not used; empty: 1 everywhere
   Index pixels_used = 0;
   S residual_rms = S(0);  ///< of the depth equation at the known depths, grey levels
-  S rim_green = S(0);     ///< mean green near the rim, grey levels; frames are compared with it to
-                          ///< detect changed light. 0: unknown
+  std::vector<S> green;  ///< of the frame, grey levels; NaN where it is dark, saturated or outside.
+                         ///< Frames are compared with it to detect changed light. Empty: unknown
 
   const S& depth(Index row, Index col) const { return depth_mm[at(row, col)]; }
   const S& g(Index row, Index col) const { return scattering[at(row, col)]; }
@@ -70,6 +70,12 @@ struct DepthReference {
 
  private:
   std::size_t at(Index row, Index col) const { return static_cast<std::size_t>(row * cols + col); }
+};
+
+/// The light of a frame over that of the reference: 1, 1 if it is the same.
+struct LightGains {
+  double green = 1;  ///< > 0
+  double red = 1;    ///< > 0
 };
 
 namespace detail {
@@ -129,8 +135,10 @@ auto crop(const View& frame, const PadArea& area) {
 class Rim {
  public:
   template <scalar S>
-  explicit Rim(const DepthReference<S>& reference)
-      : reference_(static_cast<double>(reference.rim_green)) {
+  explicit Rim(const DepthReference<S>& reference) {
+    if (reference.green.empty()) {
+      return;
+    }
     double deepest_mm = 0;
     for (const S& l : reference.depth_mm) {
       deepest_mm = l > S(deepest_mm) ? static_cast<double>(l) : deepest_mm;
@@ -141,22 +149,34 @@ class Rim {
         rim.push_back({i, j});
       }
     });
+    double sum = 0, count = 0;
+    for (const auto& [row, col] : rim) {
+      const auto g = reference.green[static_cast<std::size_t>(row * reference.cols + col)];
+      if (is_finite(g)) {
+        sum += static_cast<double>(value(g));
+        count += 1;
+      }
+    }
+    reference_ = sum / count;
     for (std::size_t k = 0; reference_ > 0 && k < rim.size(); k += rim.size() / 1024 + 1) {
       pixels_.push_back(rim[k]);
     }
   }
 
-  /// Whether green is more than 5 % lighter or darker than in the reference, or mostly dark or
-  /// saturated. Displaced printed dots change the light by 1 % with a thousand samples and by 4 %
-  /// with 64; fewer tell nothing.
+  /// Whether green is more than 5 % lighter or darker than in the reference under a light of gain
+  /// `expected`, or mostly dark or saturated. Displaced printed dots change the light by 1 % with a
+  /// thousand samples and by 4 % with 64; fewer tell nothing.
   template <class Red, class Green>
-  bool has_changed(const Red& red, const Green& green, const GreyScale& scale) const {
+  bool has_changed(const Red& red,
+                   const Green& green,
+                   const GreyScale& scale,
+                   double expected) const {
     double used = 0, sum = 0;
     for (const auto& [row, col] : pixels_) {
       const auto g = static_cast<double>(green(row, col));
       if (scale.counts(static_cast<double>(red(row, col))) && scale.counts(g)) {
         used += 1;
-        sum += g / (scale.units_per_level * reference_);
+        sum += g / (scale.units_per_level * reference_ * expected);
       }
     }
     const bool mostly_used = 2 * used >= static_cast<double>(pixels_.size());
@@ -164,7 +184,7 @@ class Rim {
   }
 
  private:
-  double reference_;
+  double reference_ = 0;
   std::vector<std::array<Index, 2>> pixels_;  // row and column
 };
 

@@ -350,7 +350,6 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
     detail::mark_unexplained(light, blocks);
   }
 
-  double bright = 0, count = 0;
   detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
     const double l = plain_depth(i, j);
     const bool inside = l >= 0 && l <= max_depth_mm;
@@ -360,12 +359,9 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
     reference.red_gain.push_back(inside ? S(light.kappa.at(place) / fluid.kappa)
                                         : not_a_number<S>());
     const C b = static_cast<C>(greens(i, j));
-    if (l >= 0 && l <= detail::rim_depth_mm(shape.deepest_mm) && scale.counts(b)) {
-      bright += static_cast<double>(value(b)) / scale.units_per_level;
-      count += 1;
-    }
+    reference.green.push_back(inside && scale.counts(b) ? S(b / C(scale.units_per_level))
+                                                        : not_a_number<S>());
   });
-  reference.rim_green = S(count > 0 ? bright / count : 0);
 
   C left_sq = C(0);
   for (const detail::FreeBlock<C>& b : blocks) {

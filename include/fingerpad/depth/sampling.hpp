@@ -72,6 +72,7 @@ DepthReference<S> sampled(const DepthReference<S>& reference, int step) {
   out.depth_mm = means_of(reference.depth_mm);
   out.scattering = means_of(reference.scattering);
   out.red_gain = means_of(reference.red_gain);
+  out.green = means_of(reference.green);
   return out;
 }
 

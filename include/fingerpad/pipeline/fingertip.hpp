@@ -17,6 +17,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "fingerpad/pipeline/detail/fingertip_light.hpp"
 #include "fingerpad/pipeline/detail/fingertip_stages.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
@@ -44,6 +45,10 @@ class Fingertip {
                         pad_->samples,
                         {.window_px = options.smoothing_px, .step = options.sampling}) {
     const FingertipOptions& o = options;
+    if (!o.depth_alone && !pad_->samples.green.empty()) {
+      light_.emplace();
+      light_->free = std::make_shared<const FreeLight<float>>(camera_, o.fluid, pad_->samples);
+    }
     if (o.neighbour_light) {
       take_off_light_.emplace(detail::light_of_samples(o));
     }
@@ -182,6 +187,11 @@ class Fingertip {
       dots_->read(dots, pad_->step);
     }
     measure_shape(touch);
+    const bool begins =
+        light_ && !light_->is_known() && touch.contact.ok() && !touch.contact.in_contact();
+    if (begins && learn_light() > 0) {
+      measure_shape(touch);  // in its own light
+    }
     if (dots_) {
       dots_->follow(camera_, depth_mm_.view(), mask_.view(), time_s, touch);
     }
@@ -191,6 +201,9 @@ class Fingertip {
     if (wrench_) {
       wrench_->read(dots, dots_in_contact(), side_dots, std::as_const(mask_).view(), pad_->step);
       measure_wrench(pressure_mpa, touch);
+    }
+    if (light_ && !begins) {
+      measure_light(touch);
     }
     if (dots_) {
       dots_->conclude(touch);
@@ -210,6 +223,28 @@ class Fingertip {
     }
     if (find_flat_area_ && touch.contact.in_contact()) {
       touch.flat_area = (*find_flat_area_)(mask_.view(), depth_mm_.view());
+    }
+  }
+
+  /// Returns what the light moved the depth of this frame by, in mm.
+  double learn_light() {
+    const double mm = light_->learn(std::as_const(red_).view(), std::as_const(green_).view());
+    estimate_depth_.set_light(light_->gains);
+    return mm;
+  }
+  /// Learns the light from a frame in which neither a region nor a force beyond two standard
+  /// deviations is found, for those that follow.
+  void measure_light(FingertipResult& touch) {
+    const Point3<double>& f = touch.wrench.force_n;
+    const double parts[] = {f.x, f.y, f.z};
+    bool is_felt = false;
+    for (Eigen::Index k = 0; k < 3 && touch.wrench.ok(); ++k) {
+      is_felt = is_felt || square(parts[k]) > 4 * touch.wrench.covariance(k, k);
+    }
+    if (touch.contact.ok() && !touch.contact.in_contact() && !is_felt) {
+      touch.depth_light_sd_mm = learn_light();
+    } else {
+      touch.depth_light_sd_mm = light_->hold();
     }
   }
 
@@ -238,7 +273,8 @@ class Fingertip {
   }
 
   FingertipStatus judge(FingertipResult& touch, double pressure_mpa) const {
-    touch.depth_in_doubt = !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok;
+    touch.depth_in_doubt =
+        !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok || touch.light_in_doubt();
     touch.contact_in_doubt =
         find_contact_ && (!touch.contact.ok() || doubts_contact(touch, pressure_mpa));
     const bool sure = !touch.depth_in_doubt && !touch.contact_in_doubt;
@@ -262,6 +298,7 @@ class Fingertip {
   detail::OwnedGrid<PixelStatus> pixel_status_;
   detail::OwnedGrid<std::uint8_t> mask_;
   DepthEstimator<float> estimate_depth_;
+  std::optional<detail::FingertipLight> light_;
   std::optional<NeighbourLightCompensation<>> take_off_light_;
   std::optional<ContactRegion<>> find_contact_;
   std::optional<EquivalentFlatArea<>> find_flat_area_;

@@ -86,7 +86,8 @@ constexpr const char* name_of(FingertipStatus status) {
 struct [[nodiscard]] FingertipResult {
   FingertipStatus status = FingertipStatus::refused;
   // What is in doubt; several may be true. The reason is the status of the stage's own result.
-  bool depth_in_doubt = false;    ///< depth or free_depth_mm is of another pad, light or unit
+  bool depth_in_doubt = false;    ///< depth or free_depth_mm is of another pad, light or unit, or
+                                  ///< light_in_doubt()
   bool contact_in_doubt = false;  ///< whether it touches, or how far, is not certain
   bool lacks_motion = false;      ///< no pose
   bool lacks_stick_ratio = false;
@@ -95,6 +96,8 @@ struct [[nodiscard]] FingertipResult {
 
   DotFollowerResult dots;  ///< of the follower; refused without one
   DepthResult depth;
+  /// By how much light may have moved the depth that changed since it was last known, mm.
+  double depth_light_sd_mm = 0;
   FrameStatus neighbour_light = FrameStatus::ok;  ///< of its removal
   ContactResult contact;
   ObjectMotionResult<double> motion;
@@ -110,6 +113,8 @@ struct [[nodiscard]] FingertipResult {
   WrenchResult wrench;        ///< six axes from the dots near the rim
 
   bool ok() const { return status == FingertipStatus::ok; }
+  /// Whether the light may err the depth by more than 0.05 mm.
+  bool light_in_doubt() const { return depth_light_sd_mm > 0.05; }
 };
 
 }  // namespace v0

@@ -135,6 +135,12 @@ class ColourRows {
     }
   }
 
+  /// Frames are taken back to the light of the reference.
+  void set_light(const LightGains& gains) {
+    green_level_ = S(1 / gains.green);
+    red_level_ = S(1 / gains.red);
+  }
+
   /// 1 / g of the pixels of a row, with a block of spare elements; 0 where a pixel is not used.
   const S* per_g(Index row) const { return per_g_.data() + row * cols_; }
 
@@ -156,7 +162,7 @@ class ColourRows {
       std::uint32_t counts[block];
       each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
         mark(r, g, per_g(row) + j, scale, counts);
-        single(r, g, gain(row) + j, counts, scale, to_red + j, to_green + j);
+        single(r, g, gain(row) + j, counts, levels(scale), to_red + j, to_green + j);
       });
       return;
     }
@@ -204,6 +210,11 @@ class ColourRows {
     } else {
       return *wide_means_;
     }
+  }
+  /// Grey levels of a stored unit of red and of green, in the light of the reference.
+  std::array<S, 2> levels(const GreyScale& scale) const {
+    const S level = S(1 / scale.units_per_level);
+    return {level * red_level_, level * green_level_};
   }
   const S* gain(Index row) const {
     return gain_.data() + (gain_.size() == rise_.size() ? row * cols_ : 0);
@@ -260,14 +271,14 @@ class ColourRows {
                                        const Pixel* green,
                                        const S* gain,
                                        const std::uint32_t* counts,
-                                       const GreyScale& scale,
+                                       const std::array<S, 2>& levels,
                                        S* __restrict to_red,
                                        S* __restrict to_green) {
-    const S level = S(1 / scale.units_per_level);
+    const S red_level = levels[0], green_level = levels[1];
     for (Index i = 0; i < block; ++i) {
       const S one = S(int(counts[i])) / S(int(counts[i]));  // NaN where the pixel does not count
-      to_red[i] = S(red[i]) * level * gain[i] * one;
-      to_green[i] = S(green[i]) * level * one;
+      to_red[i] = S(red[i]) * red_level * gain[i] * one;
+      to_green[i] = S(green[i]) * green_level * one;
     }
   }
 
@@ -283,7 +294,8 @@ class ColourRows {
     const S* rise = rise_.data() + row * cols_ + col;
     const S* scattered = scattered_.data() + row * cols_ + col;
     const S* gain = this->gain(row) + col;
-    const S level = S(1 / scale.units_per_level), kappa = kappa_ * level;
+    const std::array<S, 2> level = levels(scale);
+    const S green_level = level[1], kappa = kappa_ * level[0];
     const auto whole = [](S x) __attribute__((always_inline)) {  // NaN: the lowest
       x = x > low<Element> ? x : low<Element>;
       x = x < high<Element> ? x : high<Element>;
@@ -292,7 +304,7 @@ class ColourRows {
     constexpr S zero = middle<Element> + S(0.5);  // + 1/2: truncation then rounds
     constexpr auto shift = static_cast<std::make_signed_t<Element>>(middle<Element>);
     for (Index i = 0; i < block; ++i) {
-      const S b = S(green[i]) * level;
+      const S b = S(green[i]) * green_level;
       const S r = rise[i] * b + (scattered[i] - S(red[i]) * (gain[i] * kappa));
       residual[i] = Element((whole(r * residual_steps<Element> + zero) - shift) & -int(counts[i]));
       to_green[i] = Element(whole(b * green_steps<Element>) & -int(counts[i]));
@@ -323,6 +335,7 @@ class ColourRows {
 
   Index cols_;
   S kappa_, per_kappa_;
+  S red_level_ = S(1), green_level_ = S(1);  // of a frame, in the light of the reference
   // Planes of the area; a plane has a block of spare elements at its end.
   SharedVector<S> rise_;       // exp(delta k l0)
   SharedVector<S> scattered_;  // g W(l0), grey levels

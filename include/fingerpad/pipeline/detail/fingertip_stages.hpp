@@ -40,7 +40,7 @@ struct SampledPad {
 
   SampledPad(const DepthReference<S>& reference, int pixels_a_sample)
       : step(pixels_a_sample), pixels(reference), samples(sampled(reference, step)) {
-    pixels.scattering = pixels.red_gain = {};  // only its depth is needed
+    pixels.scattering = pixels.red_gain = pixels.green = {};  // only its depth is needed
     for (Index i = 0; i < samples.rows; ++i) {
       PadArea row{i, 0, 1, 0};
       for (Index j = 0; j < samples.cols; ++j) {
