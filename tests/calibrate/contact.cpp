@@ -118,6 +118,40 @@ TEST_CASE("calibration: two frames are enough for half of the level", "[contact_
   CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
 }
 
+TEST_CASE("calibration: the smallest press that is found, and false contact", "[contact_region]") {
+  const Index rows = 160, cols = 160;
+  const auto camera = test::height_map(rows, cols, 0.15);
+  const auto limit_of = [&](double noise_mm, double ring_px) {
+    test::Random random(4);
+    std::vector<Image<float>> frames(10,
+                                     test::depths_of<float>(camera, free_pad(0.05), rows, cols));
+    for (auto& frame : frames) {
+      add_noise(frame, noise_mm, random);
+    }
+    ContactTest test;
+    test.ring_px = ring_px;
+    test.min_region_px = 20;
+    return detection_limit(camera, frames, test, 0.05, 12);
+  };
+  const auto exact = limit_of(0, 12), noisy = limit_of(0.02, 12), small = limit_of(0, 6);
+  CHECK(exact.free_frames == 10);
+  CHECK(exact.false_frames == 0);
+  // (a/r)^2 (ln(r/a) + 1/2) = 1/4 at the pixel in the middle, of a ring of radius r
+  CHECK(exact.radius_mm > 0.43 * 12 * 0.15);
+  CHECK(exact.radius_mm < 12 * 0.15);
+  CHECK(exact.depth_mm ==
+        Approx(0.05 * square(exact.radius_mm) * (std::log(12 / exact.radius_mm) + 0.5)));
+  CHECK(small.radius_mm < 0.7 * exact.radius_mm);
+  CHECK(noisy.false_frames == 10);
+  CHECK(std::isnan(limit_of(test::nan, 12).radius_mm));  // no depth at all
+  const std::vector<Image<float>> none;
+  CHECK(begins_with(refusal([&] { (void)detection_limit(camera, none, {}, 0.05, 12); }),
+                    "detection_limit: number of frames = 0"));
+  const std::vector<Image<float>> two = {Image<float>(9, 9, 5), Image<float>(9, 8, 5)};
+  CHECK(begins_with(refusal([&] { (void)detection_limit(camera, two, {}, 0.05, 12); }),
+                    "detection_limit: rows of a frame"));
+}
+
 TEST_CASE("calibration: the standard error of the median is how far medians scatter",
           "[contact_region]") {
   const int pads = 60;

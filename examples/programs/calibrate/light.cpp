@@ -353,12 +353,20 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
   }
   const DepthMap& last = depths_mm.back();
   found.depth_noise_mm = depth_noise_mm(depths_mm, free_mm, sensor.pad.apex_height_mm);
+  fingerpad::ContactTest test;
+  test.threshold_per_mm = pad.threshold_per_mm;
+  test.ring_px = found.ring_px;
+  const auto limit = fingerpad::detection_limit(sensor.camera, depths_mm, test, pad.median_per_mm,
+                                                sensor.pad.base_radius_mm);
   Report report{.what = "contact", .residual = pad.noise_per_mm, .residual_unit = "1/mm (noise)"};
   report.parameters = {{"threshold_per_mm", pad.threshold_per_mm, pad.median_error_per_mm / 2},
                        {"curvature_of_free_pad_per_mm", pad.median_per_mm, pad.median_error_per_mm},
                        {"ring_px", found.ring_px},
                        {"depth_noise_mm", *found.depth_noise_mm},
-                       {"smoothing_px", double(*sensor.smoothing_px)}};
+                       {"smoothing_px", double(*sensor.smoothing_px)},
+                       {"free_frames_that_seem_touched", double(limit.false_frames)},
+                       {"smallest_press_mm", limit.depth_mm},
+                       {"smallest_press_n_per_mpa", limit.area_mm2()}};
   report.doubt(!pad.ok(), text_of(pad));
   report.doubt(2 * cv::countNonZero(last == last) < cv::countNonZero(free_mm == free_mm),
                "fewer than half of the pad's pixels have a depth: check calibration, exposure and "

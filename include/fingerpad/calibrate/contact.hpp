@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <numbers>
 #include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
+#include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -122,6 +125,72 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
     fit.cause = cause::depths_not_in_mm;
   }
   return fit;
+}
+
+/// The smallest press of a flat object on the apex that a contact test finds, and how often it
+/// finds one where there is none.
+struct [[nodiscard]] DetectionLimit {
+  Index free_frames = 0;                      ///< that were judged
+  Index false_frames = 0;                     ///< of them, seem touched
+  double depth_mm = not_a_number<double>();   ///< found in nine of ten frames; NaN: none is
+  double radius_mm = not_a_number<double>();  ///< of its contact
+  /// Area of the contact: the press is the pressure times this area.
+  double area_mm2() const { return std::numbers::pi * radius_mm * radius_mm; }
+};
+
+/// Lays dents into depth maps of the free pad in mm and looks for them; each is that of a shallow
+/// membrane of this base radius under its own pressure, wider than the last by an eighth. The
+/// curvature of the free pad is `free_per_mm`, as fit_contact_threshold() gives it. Refuses bad
+/// parameters and frames of several sizes (parameter_error). Allocates; O(frames rows cols
+/// directions) for each of some ten dents.
+template <scalar S = float, class CameraType, class Frames>
+DetectionLimit detection_limit(const CameraType& camera,
+                               const Frames& free_mm,
+                               const ContactTest& test,
+                               double free_per_mm,
+                               double base_radius_mm) {
+  const char* const owner = "detection_limit";
+  expects(std::size(free_mm) > 0, owner, "number of frames", 0LL, ">= 1");
+  expects(free_per_mm > 0, owner, "free_per_mm", free_per_mm, "> 0");
+  expects(base_radius_mm > 0, owner, "base_radius_mm", base_radius_mm, "> 0");
+  const auto first = as_view(*std::begin(free_mm));
+  const Index rows = first.rows(), cols = first.cols();
+  ContactRegion<S> find(camera, rows, cols, test);
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(rows * cols));
+  const auto touched = [&](double radius_mm) {
+    Index count = 0;
+    for (const auto& frame : free_mm) {
+      const auto depth_mm = as_view(frame);
+      const LazyView dented(rows, cols, [&](Index i, Index j) {
+        const S l = static_cast<S>(depth_mm(i, j));
+        if (!(radius_mm > 0) || !is_finite(l)) {
+          return l;
+        }
+        const auto at = point_at(camera, static_cast<double>(i), static_cast<double>(j),
+                                 static_cast<double>(l));
+        const double r = std::hypot(at.x, at.y), a = radius_mm;
+        const double dent_mm = r > a ? a * a * std::log(base_radius_mm / r)
+                                     : a * a * std::log(base_radius_mm / a) + (a * a - r * r) / 2;
+        return l - S((std::max)(0.0, dent_mm * free_per_mm));
+      });
+      const auto result = find(dented, StridedView<std::uint8_t>(mask.data(), rows, cols, cols));
+      expects(result.accepted(), owner, "rows of a frame", static_cast<long long>(depth_mm.rows()),
+              "of the same size as the first frame");
+      count += result.in_contact() ? 1 : 0;
+    }
+    return count;
+  };
+  DetectionLimit limit;
+  limit.free_frames = static_cast<Index>(std::size(free_mm));
+  limit.false_frames = touched(0);
+  for (double a = base_radius_mm / 32; a < base_radius_mm / 2; a *= 1.125) {
+    if (10 * touched(a) >= 9 * limit.free_frames) {
+      limit.radius_mm = a;
+      limit.depth_mm = a * a * free_per_mm * (std::log(base_radius_mm / a) + 0.5);
+      break;
+    }
+  }
+  return limit;
 }
 
 }  // namespace v0
