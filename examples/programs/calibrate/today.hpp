@@ -14,7 +14,7 @@ struct Change {
   const char* what;   ///< with its unit
   double by;          ///< today less then
   double sd;          ///< of `by`; 0: counted
-  double tolerated;   ///< a change up to this one costs less than .05 mm of depth
+  double tolerated;   ///< what the comparison cannot tell, or what costs no depth
   const char* again;  ///< what must be done again
 
   /// Whether it is larger than tolerated, and than its noise.

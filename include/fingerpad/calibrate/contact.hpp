@@ -161,7 +161,7 @@ DetectionLimit detection_limit(const CameraType& camera,
     Index count = 0;
     for (const auto& frame : free_mm) {
       const auto depth_mm = as_view(frame);
-      const LazyView dented(rows, cols, [&](Index i, Index j) {
+      const LazyView dented(depth_mm.rows(), depth_mm.cols(), [&](Index i, Index j) {
         const S l = static_cast<S>(depth_mm(i, j));
         if (!(radius_mm > 0) || !is_finite(l)) {
           return l;
