@@ -196,7 +196,7 @@ Image<float> blurred(const Image<float>& from, double sd_px) {
 /// Frames of one scene, without noise; each is computed once.
 class Frames {
  public:
-  explicit Frames(const Scene& scene) : scene_(scene) {
+  explicit Frames(const Scene& scene) {
     camera.plate_distance_mm = scene["distance_mm"];
     camera.refractive_index = scene["index"];
     camera.pitch_mm = scene["pitch_mm"];
@@ -283,7 +283,6 @@ class Frames {
     return out;
   }
 
-  const Scene& scene_;
   std::vector<Colours<float>> pictures_;
   std::vector<float> noise_ = std::vector<float>(1U << 20U);
   mutable std::size_t at_ = 0;
