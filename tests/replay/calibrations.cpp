@@ -68,7 +68,11 @@ Outcome camera_and_more() {
       {"contact",
        {{"threshold_per_mm", 0.1 / 7}, {"ring_px", 100.0 / 3}, {"depth_noise_mm", 0.1 / 3}}},
       {"stick", {{"noise_px", 1.0 / 7}}},
-      {"rim", {{"membrane_modulus_n_per_mm", 1.0 / 3}, {"mooney_share", 0.1 / 3}}},
+      {"rim",
+       {{"membrane_modulus_n_per_mm", 1.0 / 3},
+        {"mooney_share", 0.1 / 3},
+        {"membrane_thickness_mm", 1.0 / 3},
+        {"full_scale_n", 100.0 / 3}}},
       {"neighbour_light", {{"radius_px", 3}, {"m0_mm_per_rad", 1e-3 / 3}, {"n_per_mm", 0.1 / 3}}},
       {"smoothing_px", 15},
       {"force",
@@ -129,6 +133,8 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.stick.noise == 1.0 / 7);
   CHECK(sensor.rim->membrane_modulus_n_per_mm == 1.0 / 3);
   CHECK(sensor.rim->mooney_share == 0.1 / 3);
+  CHECK(sensor.rim->membrane_thickness_mm == 1.0 / 3);
+  CHECK(sensor.rim->full_scale_n == 100.0 / 3);
   CHECK(sensor.neighbour_light->m0_mm_per_rad == 1e-3 / 3);
   CHECK(sensor.smoothing_px == 15);
   REQUIRE(sensor.force);

@@ -137,6 +137,21 @@ TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
   CHECK(error[5] < 0.06 * largest_n_m);
 }
 
+TEST_CASE("replay: a number is uncertain for a small full scale", "[wrench]") {
+  const auto uncertain = [](double full_scale_n) {
+    const Workplace work;
+    work.replace("sensor.json", "\"membrane_modulus_n_per_mm\"",
+                 "\"full_scale_n\": " + std::to_string(full_scale_n) +
+                     ", \"membrane_modulus_n_per_mm\"");
+    const auto found = work.run({});
+    return std::count_if(found.begin(), found.end(), [](const Line& line) {
+      return is_full(line) && line.at("wrench_status") == "uncertain";
+    });
+  };
+  CHECK(uncertain(30) == 0);
+  CHECK(uncertain(0.1) == 10);  // all but the first, in which nothing touches
+}
+
 TEST_CASE("replay: what the force needs may be missing", "[wrench]") {
   const Workplace work;
   SECTION("no dots") {

@@ -204,6 +204,8 @@ Rim read_rim(const Section& root) {
        {"membrane_modulus_sd_n_per_mm", "its standard deviation, N/mm; 1 % if absent"},
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
        {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
+       {"membrane_thickness_mm", "thickness of the membrane, which bends where it is clamped, mm"},
+       {"full_scale_n", "the largest press to expect, N; a quarter of pressure times base if absent"},
        {"side_dots", "rows of dots around the rim, which are found in the pictures"}});
   Rim rim;
   if (section.has("membrane_modulus_n_per_mm")) {
@@ -220,6 +222,12 @@ Rim read_rim(const Section& root) {
     section.check([&] {
       fingerpad::require("rim", {{"mooney_share", rim.mooney_share, fingerpad::within(0, 1)}});
     });
+  }
+  if (section.has("membrane_thickness_mm")) {
+    rim.membrane_thickness_mm = section.positive("membrane_thickness_mm");
+  }
+  if (section.has("full_scale_n")) {
+    rim.full_scale_n = section.positive("full_scale_n");
   }
   if (section.has("side_dots")) {
     rim.side_rows = read_side_rows(section);

@@ -46,6 +46,8 @@ struct Rim {
   std::optional<double> membrane_modulus_sd_n_per_mm;
   std::optional<double> stress_free_inclination_rad;  ///< of the membrane at the rim
   double mooney_share = 0;                            ///< C2 / (C1 + C2) of its rubber
+  double membrane_thickness_mm = 0;                   ///< 0: not known
+  double full_scale_n = 0;                            ///< the largest press to expect; 0: not known
   std::vector<fingerpad::SideRow> side_rows;          ///< of dots around the rim; may be empty
 };
 

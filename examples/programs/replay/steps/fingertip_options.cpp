@@ -104,6 +104,8 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
     if (const auto sd = sensor.rim->membrane_modulus_sd_n_per_mm) {
       options.wrench->modulus_sd_share = (std::min)(*sd / options.wrench->modulus_n_per_mm, 1.0);
     }
+    options.wrench->thickness_mm = sensor.rim->membrane_thickness_mm;
+    options.wrench->full_scale_n = sensor.rim->full_scale_n;
   }
   return settings;
 }
