@@ -236,9 +236,10 @@ TEST_CASE("without six axes friction is that of the look-up", "[chain]") {
     const FingertipResult touch = tip(in.red, in.green, in.dots_px);
     REQUIRE(touch.normal.has_force());
     const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
-    const double load_n = std::hypot(norm(touch.shear.tangential_force_n),
-                                     touch.shear.moment_n_mm / (2.0 / 3 * radius_mm));
-    CHECK(touch.slip.friction == Approx(load_n / touch.normal.force_n));
+    const fingerpad::ContactLoad<double> load = {touch.normal.force_n,
+                                                 norm(touch.shear.tangential_force_n),
+                                                 touch.shear.moment_n_mm, 2.0 / 3 * radius_mm};
+    CHECK(touch.slip.friction == Approx(fingerpad::friction_of(load)));
     if (k == 1) {  // rotated most
       CHECK(std::abs(touch.shear.moment_n_mm) > 0.1);
     }
