@@ -130,11 +130,11 @@ PLANTED = {
     ),
     "a public type in a detail file": (
         "include/fingerpad/depth/detail/planted.hpp",
-        "namespace fingerpad { inline namespace v0 { struct Planted { int x = 0; }; } }\n",
+        "namespace fingerpad { inline namespace v1 { struct Planted { int x = 0; }; } }\n",
     ),
     "a public function in a detail file": (
         "include/fingerpad/depth/detail/planted.hpp",
-        "namespace fingerpad { inline namespace v0 { inline int planted() { return 0; } } }\n",
+        "namespace fingerpad { inline namespace v1 { inline int planted() { return 0; } } }\n",
     ),
     "a test that includes a detail file": (
         "tests/planted.cpp",

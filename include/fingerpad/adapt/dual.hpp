@@ -14,7 +14,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 template <std::size_t N, class Real = double>
 struct Dual {
@@ -131,5 +131,5 @@ Real carried_variance(const Dual<N, Real>& result, const Covariance& covariance)
   return variance;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -11,7 +11,7 @@
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 template <class G>
@@ -36,7 +36,7 @@ struct grid_traits<G> {
   static Index col_stride(const G& g) { return G::IsRowMajor ? g.innerStride() : g.outerStride(); }
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad
 
 template <std::size_t N, class Value>

@@ -10,7 +10,7 @@
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 template <class G> concept mdspan_2d = G::rank()
@@ -46,5 +46,5 @@ struct grid_traits<G> {
   }
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -9,7 +9,7 @@
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 template <class T>
 struct grid_traits<cv::Mat_<T>> {
@@ -56,5 +56,5 @@ StridedView<const T> channel(const cv::Mat& image, int c) {
   return channel<const T>(const_cast<cv::Mat&>(image), c);
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -19,7 +19,7 @@
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 template <class G> concept xtensor_in_memory = requires(G& g) {
@@ -108,5 +108,5 @@ template <int Coordinates = 2, class Tensor>
   requires(xt::is_xexpression<Tensor>::value && !std::is_lvalue_reference_v<Tensor>)
 auto dots_of_tensor(Tensor&& temporary) = delete;
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

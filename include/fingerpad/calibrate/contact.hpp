@@ -24,7 +24,7 @@
 #include "fingerpad/image/curvature.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The threshold and the curvature of the free pad, 1/mm.
 template <scalar S = double>
@@ -193,5 +193,5 @@ DetectionLimit detection_limit(const CameraType& camera,
   return limit;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

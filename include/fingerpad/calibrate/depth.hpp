@@ -36,7 +36,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The mean colour of one place of the membrane with known depth. The reference frame gives such
 /// samples, too.
@@ -463,5 +463,5 @@ S predicted_depth_sd(const AbsorptionFit<S, Degree>& fit, const DepthSample<S>& 
   return sqrt(variance) / slope;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -18,7 +18,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Noise of one position along one axis, in px or whatever unit the dots are in.
 template <scalar S = double>
@@ -138,5 +138,5 @@ DotNoise<S> dot_noise(const Frames& frames_px) {
   return noise;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

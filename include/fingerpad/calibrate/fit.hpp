@@ -5,7 +5,7 @@
 // (parameter_error). Samples that determine them but look wrong give parameters and the likely
 // cause.
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A fit that is not ok() says in its field `cause` what is likely wrong; nullptr if it is ok.
 /// Causes of several fits, each with one address in a program, to compare with ==:
@@ -33,5 +33,5 @@ const char* text_of(const Fit& fit) {
   return fit.ok() ? "ok" : fit.cause;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

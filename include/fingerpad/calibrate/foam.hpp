@@ -21,7 +21,7 @@
 #include "fingerpad/foam/taxels.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Noise of a taxel array. Readings are in the unit of the sensor.
 template <scalar S = double>
@@ -334,5 +334,5 @@ PreslipFit fit_preslip(std::type_identity_t<std::span<const MarkedSample<S>>> sa
   return fit;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -25,7 +25,7 @@
 #include "fingerpad/math/detail/triangle.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The law and its uncertainty.
 template <scalar S = double>
@@ -281,5 +281,5 @@ IntensityFit<S> fit_intensity(const Free& free,
   return fit;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -32,7 +32,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// One measurement. NaN: not measured; a fit leaves out samples that lack a value it needs.
 template <scalar S = double>
@@ -563,5 +563,5 @@ ShearFit<S> fit_moment(std::span<const ForceSample<S>> samples,
       });
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -22,7 +22,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 template <scalar S = double>
 struct [[nodiscard]] NeighbourLightFit {
@@ -210,5 +210,5 @@ NeighbourLightFit<S> fit_neighbour_light(const std::type_identity_t<S>& pitch_mm
   return fit;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -25,7 +25,7 @@
 #include "fingerpad/membrane/free_pad.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Height of the contact-free pad's apex above the base at a pressure, the mean of its frames.
 struct FreeApex {
@@ -243,5 +243,5 @@ RimFit fit_rim_to_weight(const CameraType& camera,
   return fit;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -32,7 +32,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The test for contact: a mean curvature below the threshold.
 struct ContactTest {
@@ -410,5 +410,5 @@ class ContactRegion {
   detail::SharedVector<Ray> rays_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -35,7 +35,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The equivalent flat area; NaN if too little of the free membrane was seen.
 template <scalar S = double>
@@ -270,5 +270,5 @@ class EquivalentFlatArea {
   std::vector<Curve> curves_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

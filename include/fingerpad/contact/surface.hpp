@@ -27,7 +27,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The object's surface at the middle of the contact. All numbers are NaN unless ok(): if grids
 /// differ in size (0 pixels), with no more than 6 pixels, and where the pixels determine no
@@ -191,5 +191,5 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
           .rms_mm = std::sqrt(fit.sum_sq / count)};
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -18,7 +18,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// What a constructor throws for a bad parameter: "Camera: refractive_index = 0.9, must be >= 1".
 class parameter_error : public std::invalid_argument {
@@ -172,5 +172,5 @@ void expects(
   }
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -14,7 +14,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Reads the coordinates of a point type: the members x, y (and z) if it has them, else p[0], p[1]
 /// (and p[2]) as in Eigen vectors, cv::Vec and arrays. Specialise it for other types.
@@ -109,5 +109,5 @@ constexpr Index count_present(const G& dots) {
   return count;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

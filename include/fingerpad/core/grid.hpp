@@ -17,7 +17,7 @@
 #include "fingerpad/core/check.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 template <class G> concept has_size_members = requires(const G& g) {
@@ -347,5 +347,5 @@ template <class G> concept contact_mask = grid<G> && requires(const cell_t<G>& c
   static_cast<bool>(cell);
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

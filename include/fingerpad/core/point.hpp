@@ -7,7 +7,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A point in the image (px) or on the plate (mm). x is along columns, y along rows.
 template <scalar S>
@@ -99,5 +99,5 @@ constexpr Point3<S> missing_point() {
 }
 }  // namespace detail
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -29,7 +29,7 @@
   (FINGERPAD_VERSION_MAJOR * 10000 + FINGERPAD_VERSION_MINOR * 100 + FINGERPAD_VERSION_PATCH)
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A count or a place. Signed, as Eigen::Index: strides may be negative and differences need no
 /// cast.
@@ -108,5 +108,5 @@ constexpr S square(const S& x) {
   return x * x;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class FrameStatus : std::uint8_t {
   ok,
@@ -21,5 +21,5 @@ constexpr const char* name_of(FrameStatus status) {
                                                   : "refused";
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -26,7 +26,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Optical properties of the fluid; the defaults are the published values.
 template <scalar S = double>
@@ -241,5 +241,5 @@ DepthRoot<S> newton_depth(const Absorption<S>& fluid,
   return {depth, PixelStatus::ok};
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

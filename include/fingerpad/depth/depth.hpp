@@ -31,7 +31,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 struct DepthOptions {
   int window_px = 29;  ///< width of the smoothing window, odd, 3..109 step; 1: no smoothing, for
@@ -273,5 +273,5 @@ class DepthEstimator {
   Index pad_pixels_ = 0;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

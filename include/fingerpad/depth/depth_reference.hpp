@@ -18,7 +18,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Relation of stored intensities to grey levels 0..255, and the limits beyond which they carry no
 /// information. A pixel counts only if both its channels lie strictly between the two limits.
@@ -189,5 +189,5 @@ class Rim {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -25,7 +25,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 
@@ -384,5 +384,5 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   return reference;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

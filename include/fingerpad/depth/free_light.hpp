@@ -25,7 +25,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The light of a frame of the free pad.
 struct FreeLightResult {
@@ -227,5 +227,5 @@ class FreeLight {
   std::vector<Block> blocks_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -26,7 +26,7 @@
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Coefficients of the law in mm: depth as a polynomial of the logarithm.
 template <scalar S = double>
@@ -235,5 +235,5 @@ class IntensityDepth {
   detail::ReservedVector<S> edge_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

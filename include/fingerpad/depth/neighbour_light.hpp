@@ -30,7 +30,7 @@
 #include "fingerpad/image/detail/quick_math.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Parameters of the neighbouring light. The defaults are the published values, in the order that
 /// their units require (E008). r, m0 and n are fit parameters (E009): see
@@ -360,5 +360,5 @@ class NeighbourLightCompensation {
   bool is_any_lost_ = false;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -12,7 +12,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A polynomial of the place on the plate, with x and y in units of scale_mm.
 template <scalar S, int Degree>
@@ -58,5 +58,5 @@ struct PadLight {
   PlanePolynomial<S, (Degree > 0 ? 1 : 0)> kappa;  ///< alpha_G beta_G / (alpha_R beta_R)
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

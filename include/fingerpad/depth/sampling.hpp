@@ -25,7 +25,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The type in which samples are stored: 16 bit for 8-bit pixels, else the pixel's own type.
 template <class Pixel>
@@ -260,5 +260,5 @@ bool sample_frame(const Red& red,
   return true;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -29,7 +29,7 @@
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Known properties of a print. Values that are 0, NaN or empty are found in the frame of the free
 /// pad.
@@ -356,5 +356,5 @@ class DotFinder {
   detail::SpotWorkspace workspace_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -25,7 +25,7 @@
 #include "fingerpad/dots/detail/mark_follower.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class DotFollowerStatus : std::uint8_t {
   ok,
@@ -228,5 +228,5 @@ class DotFollower {
   std::vector<double> sd_px_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

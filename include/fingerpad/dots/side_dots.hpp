@@ -26,7 +26,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Equally spaced dots at one distance from the rim.
 struct SideRow {
@@ -255,5 +255,5 @@ class SideDots {
   std::string refusal_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

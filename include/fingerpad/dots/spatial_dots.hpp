@@ -15,7 +15,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail::dots {
 
@@ -151,5 +151,5 @@ bool contact_at_dots(const Dots& dots_px, const Mask& mask, Out&& out, double do
   return true;
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -10,7 +10,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class TaxelStatus : std::uint8_t {
   vibrating,  ///< a taxel varies by more than its noise: location and waves are known
@@ -96,5 +96,5 @@ struct FingerSample {
   bool is_vibrating() const { return location != no_location && waves > 0; }
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -23,7 +23,7 @@
 #include "fingerpad/foam/preslip.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class SearchPhase : std::uint8_t {
   settling,  ///< the vibration of the last command decays: only `slipped` is acted on
@@ -247,5 +247,5 @@ class LiftWithRegrip {
   Index height_steps_ = 0;  // steps lifted so far
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

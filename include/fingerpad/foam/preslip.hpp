@@ -28,7 +28,7 @@
 #include "fingerpad/foam/finger_sample.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class PreslipRule : std::uint8_t {
   /// Second experiment, and the rule for all other cases.
@@ -241,5 +241,5 @@ class Preslip {
   std::size_t count_ = 0;                 // samples since the start
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -35,7 +35,7 @@
 #include "fingerpad/foam/finger_sample.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The array and its window. Readings are in the sensor's own unit (counts, V, N). The paper prints
 /// no values; the defaults suit arrays of 12-bit counts read 30 times a second.
@@ -437,5 +437,5 @@ class TaxelFeatures {
   bool has_rested_ = false;  // a window was quiet since the start or the last new clock
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -35,7 +35,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Statuses from the best to the worst.
 enum class ForceStatus : std::uint8_t {
@@ -345,5 +345,5 @@ class Shear {
   ShearMap<S> map_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

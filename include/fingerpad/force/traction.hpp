@@ -39,7 +39,7 @@
 #include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class TractionStatus : std::uint8_t {
   ok,
@@ -527,5 +527,5 @@ explicit TractionField(const Dots&) -> TractionField<>;
 template <spatial_dot_grid Dots, scalar S = double>
 TractionField(const Dots&, const TractionOptions<S>&) -> TractionField<S>;
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

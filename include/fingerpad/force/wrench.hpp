@@ -31,7 +31,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A printed dot near the rim: where it lies on the membrane without stress, and where it is seen.
 struct Mark {
@@ -502,5 +502,5 @@ class Wrench {
   double misfit_ = 0;  // sum of squares
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

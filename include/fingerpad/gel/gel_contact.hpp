@@ -27,7 +27,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Lengths are in px of the frame.
 struct GelOptions {
@@ -462,5 +462,5 @@ class GelContact {
   std::vector<int> holes_, cells_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -34,7 +34,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Thresholds of the slide. A pitch is the distance of neighbouring dots.
 struct SlideOptions {
@@ -398,5 +398,5 @@ class GelSlide {
   SlideResult key_, result_;  // of the key frame, of the last frame
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

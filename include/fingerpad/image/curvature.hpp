@@ -43,7 +43,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 namespace detail {
 
@@ -373,5 +373,5 @@ class CurvatureMap {
   std::vector<S> clamped_, plain_;  // of a segment
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -17,7 +17,7 @@
 #include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Limit for collinear points: if their spread across the line is below a tenth of that along it,
 /// they do not determine a rotation.
@@ -146,5 +146,5 @@ std::optional<Pose<S>> fit_rigid(Index count,
   return Pose<S>{*best, to_center - (*best)(from_center)};
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

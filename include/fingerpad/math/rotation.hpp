@@ -12,7 +12,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// A 3x3 rotation matrix: x_now = R x_before. Indexed as m[row][col], identity by default.
 template <scalar S = double>
@@ -137,5 +137,5 @@ Rotation<S> renormalized(const Rotation<S>& r) {
 }
 }  // namespace detail::motion
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

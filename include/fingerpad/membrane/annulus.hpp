@@ -24,7 +24,7 @@
 #include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 struct AnnulusOptions {
   double reach_mm = 10;        ///< stress-free arc from the rim, > 0
@@ -442,5 +442,5 @@ class Annulus {
   Field y_, around_, hoop_, x_at_, y_at_, x_sum_, y_sum_, y_rate_, rim_around_, rim_pull_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -14,7 +14,7 @@
 #include "fingerpad/membrane/rubber.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// The membrane without stress: a spherical cap of one rubber.
 template <scalar S = double>
@@ -187,5 +187,5 @@ class FreePad {
   S bend_mm_ = S(0), arc_mm_ = S(0);
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

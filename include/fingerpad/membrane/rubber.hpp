@@ -12,7 +12,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Pull across the direction of `other`, dW/d(along). `along` and `other` are derivatives of the
 /// position along two directions that are perpendicular unit vectors without stress. With
@@ -101,5 +101,5 @@ Point3<S> stretch_of_pull(const Point3<S>& pull, const Point3<S>& other, const S
 }
 
 }  // namespace detail::membrane
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

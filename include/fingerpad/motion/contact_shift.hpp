@@ -27,7 +27,7 @@
 #include "fingerpad/core/grid.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 struct ShiftOptions {
   /// The dots on both sides of the contact's edge: dots in contact with one of eight neighbours
@@ -257,5 +257,5 @@ class ContactShift {
 template <dot_grid Grid>
 ContactShift(const Grid&, const ShiftOptions& = {}) -> ContactShift<double>;
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

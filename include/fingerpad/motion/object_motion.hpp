@@ -31,7 +31,7 @@
 #include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 enum class MotionStatus : std::uint8_t {
   ok,
@@ -311,5 +311,5 @@ class ObjectMotion {
   ObjectMotionResult<S> last_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

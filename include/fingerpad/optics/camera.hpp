@@ -23,7 +23,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Camera and plate. Without distortion a pixel's direction is that of a pinhole: tan(phi_air) = t
 /// grows linearly with the distance from the center pixel. A lens shows the direction t where a
@@ -251,5 +251,5 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   return pixel_at_tangents(camera, {point.x / reach, point.y / reach});
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

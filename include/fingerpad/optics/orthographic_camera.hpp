@@ -10,7 +10,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Each pixel sees the point straight above it.
 template <scalar S = double>
@@ -59,5 +59,5 @@ Point2<S> pixel_of(const OrthographicCamera<S>& camera, const Point3<S>& point) 
           camera.center_y_px + point.y / (camera.pitch_mm * camera.pixel_aspect)};
 }
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

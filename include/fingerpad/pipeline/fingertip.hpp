@@ -22,7 +22,7 @@
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// One pad. The object is the state: copy it to return to a frame later; copies share what is
 /// constant of the pad. A copy takes some 3 MB at 640 x 480 pixels and 441 dots, and less than a
@@ -308,5 +308,5 @@ class Fingertip {
   std::optional<detail::FingertipWrench> wrench_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -22,7 +22,7 @@
 #include "fingerpad/slip/stick_ratio.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Everything that is known of a fingertip before its first frame. A stage whose input is not given
 /// does not exist: it takes no memory and no time.
@@ -117,5 +117,5 @@ struct [[nodiscard]] FingertipResult {
   bool light_in_doubt() const { return depth_light_sd_mm > 0.05; }
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -21,7 +21,7 @@
 #include "fingerpad/foam/taxels.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Pre-slip detector of one hand. It keeps the windows of its fingers and the history of the rule:
 /// one object a hand; copy it to return to this sample later. A sample allocates nothing, throws
@@ -66,5 +66,5 @@ class FoamHand {
   Preslip<S> rule_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

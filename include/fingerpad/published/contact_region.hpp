@@ -23,7 +23,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// Curvature of a section from the center of the circle through three points, as published: eqs. 10
@@ -189,5 +189,5 @@ double threshold_by_slides(const Frames& depths_mm, const SlidesContactOptions& 
 }
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -20,7 +20,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// The camera above the fluid; the slides neglect the plate.
@@ -310,5 +310,5 @@ std::optional<Fluid<S>> identify_fluid(const KnownPixel<S>& reference,
 }
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -8,7 +8,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// The object is the state: copy it to return to a frame. O(1).
@@ -34,5 +34,5 @@ class FrictionRatio {
 };
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -11,7 +11,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// Eq. 1, elastic pads: the contact radius in mm, c f^gamma, for a force > 0 in N. gamma is 1/3 for
@@ -165,5 +165,5 @@ Shear<S> shear_by_depth(const S& force_n_per_mm, const S& moment_n_mm_per_rad) {
 }
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -20,7 +20,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// psi at pixel (i, j) in rad, by central differences; NaN at the image's border and where a depth
@@ -136,5 +136,5 @@ IdentifiedLight identify_neighbour_light(const Depth& depth_mm,
 }
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

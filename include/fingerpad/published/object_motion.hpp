@@ -15,7 +15,7 @@
 #include "fingerpad/math/rotation.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// Eqs. 14-16: the columns n_1, n_2, n_3 around the middle one of 3 x 3 dots, where dots(row, col)
@@ -181,5 +181,5 @@ template <spatial_dot_grid Dots>
 ObjectMotion(const Dots&) -> ObjectMotion<double>;
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -37,7 +37,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 template <scalar S = double>
@@ -416,5 +416,5 @@ class SegmentEquilibrium {
 };
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

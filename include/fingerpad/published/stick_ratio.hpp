@@ -21,7 +21,7 @@
 #include "fingerpad/core/point.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace published {
 
 /// "Calculation of scale parameter alpha".
@@ -361,5 +361,5 @@ class StickRatio {
 };
 
 }  // namespace published
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

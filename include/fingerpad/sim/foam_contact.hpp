@@ -22,7 +22,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 /// x^exponent for x > 0, else 0; NaN for NaN.
 template <scalar S>
@@ -207,5 +207,5 @@ struct LiftLoad {
   }
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -28,7 +28,7 @@
 #include "fingerpad/slip/stick_ratio.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// Load of a contact. NaN and values of a million or more mean unknown; an unknown moment counts as
 /// zero.
@@ -406,5 +406,5 @@ class FrictionLimit {
   std::size_t next_ = 0;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -31,7 +31,7 @@
 #include "fingerpad/slip/friction_limit.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 template <scalar S = double>
 struct GripOptions {
@@ -276,5 +276,5 @@ class GripControl {
   bool has_slipped_ = false;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

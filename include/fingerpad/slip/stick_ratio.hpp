@@ -35,7 +35,7 @@
 #include "fingerpad/slip/detail/frame_noise.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 
 /// State of a dot.
 enum class DotState : std::uint8_t {
@@ -712,5 +712,5 @@ class StickRatio {
   StickResult<S> result_;
 };
 
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -27,7 +27,7 @@
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// q: the share of the jump that a ring measures if its center lies `offset` ring radii outside a
@@ -96,5 +96,5 @@ void mean_of_nine(const StridedView<S>& map, Index rows, Index cols, const Strid
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -13,7 +13,7 @@
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// State of a pixel while regions are found.
@@ -161,5 +161,5 @@ class Regions {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -12,7 +12,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Cells of a grid with a border of one cell, so that each cell has neighbours, in rows of `width`.
@@ -109,5 +109,5 @@ S mean_pitch_sq(const Cells& cells, const Point3<S>* dots, Index width) {
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

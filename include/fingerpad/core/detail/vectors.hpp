@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// A vector whose copies keep its capacity: a copied state must not allocate during a frame, but a
@@ -49,5 +49,5 @@ class SharedVector {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -33,7 +33,7 @@
 #include "fingerpad/image/detail/window_means.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Reads columns [col, col + n) of a row of both channels.
@@ -349,5 +349,5 @@ class ColourRows {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

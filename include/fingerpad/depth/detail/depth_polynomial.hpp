@@ -26,7 +26,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Calls f(0), f(1), ... f(N - 1) with constants. GCC 12 vectorises at -O2 only loops that hold no
@@ -242,5 +242,5 @@ class DepthPolynomial {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

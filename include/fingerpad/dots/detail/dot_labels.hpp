@@ -17,7 +17,7 @@
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Index of the spot of each dot; -1: none.
@@ -484,5 +484,5 @@ class DotPrint {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -14,7 +14,7 @@
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 constexpr Index min_lattice_dots = 9;  // fewer may form a grid by chance
@@ -232,5 +232,5 @@ inline Places lattice_of(const std::vector<Place>& spots) {
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

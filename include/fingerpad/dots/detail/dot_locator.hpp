@@ -18,7 +18,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Where a point (a, b) of the disc, in radii, is seen:
@@ -458,5 +458,5 @@ class DotLocator {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

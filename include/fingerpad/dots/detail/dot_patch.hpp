@@ -9,7 +9,7 @@
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 class DotPatch {
@@ -94,5 +94,5 @@ class DotPatch {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -17,7 +17,7 @@
 #include "fingerpad/dots/detail/dot_table.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Appearance of spots.
@@ -430,5 +430,5 @@ class SpotFinder {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -18,7 +18,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 using Place = Point2<double>;
@@ -305,5 +305,5 @@ Table<T> window_of(
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

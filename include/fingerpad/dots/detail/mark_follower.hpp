@@ -21,7 +21,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// NaN of none; reorders the values.
@@ -473,5 +473,5 @@ class MarkFollower {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -15,7 +15,7 @@
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Between four pixels; 0 outside.
@@ -96,5 +96,5 @@ struct SideRings {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -10,7 +10,7 @@
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 #if defined(FINGERPAD_HAS_VECTORS)
@@ -71,5 +71,5 @@ Index load_interleaved(const std::uint8_t*, Index, Index, Index, std::uint8_t*, 
 #endif
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

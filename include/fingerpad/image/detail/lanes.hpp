@@ -24,7 +24,7 @@
 #endif
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// The number of lanes of S in a vector; 1 if there are no vectors of S.
@@ -195,5 +195,5 @@ void store_row(const S* from, const View& view, Index row) {
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -32,7 +32,7 @@
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Red has a sign and is kept modulo 2^32 (in [-2^15, 2^15]) or 2^64 (in [-2^47, 2^47]); green is
@@ -178,5 +178,5 @@ class WindowMeans {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -11,7 +11,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// R of the QR factorisation of a matrix of few columns, by Householder reflections: least squares
@@ -110,5 +110,5 @@ class Triangle {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

@@ -9,7 +9,7 @@
 #include "fingerpad/depth/free_light.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// The light of the frames, measured where nothing touches and held in between.
@@ -79,5 +79,5 @@ struct FingertipLight {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

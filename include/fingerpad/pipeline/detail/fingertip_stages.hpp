@@ -16,7 +16,7 @@
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// A grid that owns its cells.
@@ -464,5 +464,5 @@ inline NeighbourLightCompensation<> light_of_samples(const FingertipOptions& o) 
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

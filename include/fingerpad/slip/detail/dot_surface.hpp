@@ -10,7 +10,7 @@
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail::stick {
 
 /// A surface z = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, with coordinates relative to
@@ -67,5 +67,5 @@ Quadric<S> quadric_through(const ForEach& for_each) {
 }
 
 }  // namespace detail::stick
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

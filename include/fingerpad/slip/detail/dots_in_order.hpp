@@ -10,7 +10,7 @@
 #include "fingerpad/math/rigid_fit.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Whether the labels of the dots have changed and not their places: all dots found, in contact or
@@ -49,5 +49,5 @@ bool is_renumbered(const FrameOfDots<S>& now, const Bordered<Point3<S>>& then, c
 }
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad

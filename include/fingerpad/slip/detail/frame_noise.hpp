@@ -14,7 +14,7 @@
 #include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
-inline namespace v0 {
+inline namespace v1 {
 namespace detail {
 
 /// Except for noise, a dot moves like the mean of the two dots beside it. With displacements d
@@ -77,5 +77,5 @@ class FrameNoise {
 };
 
 }  // namespace detail
-}  // namespace v0
+}  // namespace v1
 }  // namespace fingerpad
