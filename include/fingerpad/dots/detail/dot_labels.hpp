@@ -4,8 +4,8 @@
 // Gives the spots of a frame the rows and columns of a print. Labels grow from a block of 3 x 3
 // dots to their neighbours: the motion of labelled dots predicts that of the dots beside them. What
 // has grown from one block is a piece of one grid, but its rows and columns may be off by a whole
-// number, so growth continues beyond the border of the print. A spot where nothing is printed tells
-// that the labels are off.
+// number, so growth continues beyond the border of the print. Spots where nothing is printed, and
+// printed dots without a spot, tell that the labels are off.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -389,20 +389,24 @@ class DotPrint {
     Labels& labels = answer.labels = growth.from(seed, move);
     Labels sure = labels;  // few specks lie so well where a dot would be
     growth.drop_misfits(sure, 0.15);
-    std::vector<Index> wrong;
+    // Dots where nothing is printed refute a shift, unless others miss more printed dots instead.
+    const Table<char> unseen = unseen_of(labels, move);
+    std::vector<Index> strange, wrong;
     for (const DotIndex& shift : shifts_) {
-      wrong.push_back(count(sure, blank, shift));
+      strange.push_back(count(sure, blank, shift));
+      wrong.push_back(strange.back() + missing(unseen, shift));
     }
-    const Index least = *std::min_element(wrong.begin(), wrong.end());
+    const Index least_strange = *std::min_element(strange.begin(), strange.end());
+    const Index least_wrong = *std::min_element(wrong.begin(), wrong.end());
     std::optional<DotIndex> by;
     for (std::size_t k = 0; k < shifts_.size(); ++k) {
-      if (wrong[k] >= least + evidence) {
+      if (strange[k] >= least_strange + evidence && wrong[k] >= least_wrong + evidence) {
         continue;
       }
       if (!by) {
         by = shifts_[k];
       } else {
-        answer.ambiguous = answer.ambiguous || is_rival(shifts_[k], *by, labels, move);
+        answer.ambiguous = answer.ambiguous || is_rival(shifts_[k], *by, unseen);
       }
     }
     answer.score = -count(sure, blank, *by);
@@ -423,13 +427,10 @@ class DotPrint {
 
   /// Whether another shift is as possible as the smallest one: a jump of the print would have shown
   /// dots where nothing is printed, or the other shift misses fewer dots.
-  bool is_rival(const DotIndex& other,
-                const DotIndex& shift,
-                const Labels& labels,
-                const Place& move) const {
+  bool is_rival(const DotIndex& other, const DotIndex& shift, const Table<char>& unseen) const {
     return exposed_(other.row - shift.row + 2 * beyond, other.col - shift.col + 2 * beyond) >=
                evidence ||
-           missing(labels, other, move) + evidence <= missing(labels, shift, move);
+           missing(unseen, other) + evidence <= missing(unseen, shift);
   }
 
   /// How many of some places fall on places of a kind if all are moved by rows and columns.
@@ -446,14 +447,23 @@ class DotPrint {
     return number;
   }
 
-  /// How many printed dots have no label then, although they would be in view.
-  Index missing(const Labels& labels, const DotIndex& by, const Place& move) const {
+  /// Places in view that have no label.
+  Table<char> unseen_of(const Labels& labels, const Place& move) const {
+    Table<char> unseen(labels.rows(), labels.cols(), 0);
+    for (std::size_t k = 0; k < unseen.cells().size(); ++k) {
+      const bool is_unseen = labels.cells()[k] < 0 && in_view_(free_.cells()[k] + move);
+      unseen.cells()[k] = is_unseen ? 1 : 0;
+    }
+    return unseen;
+  }
+  /// How many printed dots are not seen then.
+  Index missing(const Table<char>& unseen, const DotIndex& by) const {
     Index number = 0;
-    for (Index i = 0; i < labels.rows(); ++i) {
-      for (Index j = 0; j < labels.cols(); ++j) {
+    for (Index i = 0; i < unseen.rows(); ++i) {
+      for (Index j = 0; j < unseen.cols(); ++j) {
         const bool is_printed =
             kind_.contains(i + by.row, j + by.col) && kind_(i + by.row, j + by.col) == printed;
-        number += is_printed && labels(i, j) < 0 && in_view_(free_(i, j) + move) ? 1 : 0;
+        number += is_printed ? unseen(i, j) : 0;
       }
     }
     return number;
