@@ -619,6 +619,31 @@ TEST_CASE("dots: where nothing tells by which rows and columns, none are given")
   CHECK(test::errors_of(found, test::moved(truth, {jump * print.pitch_px, 0})).worst_px < 1e-9);
 }
 
+TEST_CASE("dots: strange dots beside a print do not refute its rows and columns") {
+  // The print jumps until its first column has left the picture. Some strange dots beside its last
+  // column would be dots of that column if the print had jumped by one column less.
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  DotFinder finder(test::picture_of(print, truth));
+  const int strange = GENERATE(0, 3, 4, 5);
+  const int first = GENERATE(0, 2);  // row of the first of them
+  const double jump = GENERATE(1.35, 1.4, 1.6);
+  const DotPlaces now = test::moved(truth, {-jump * print.pitch_px, 0});
+  std::vector<Point2<double>> spots;
+  for (int i = 0; i < now.rows; ++i) {
+    for (int j = 1; j < now.cols; ++j) {
+      spots.push_back({now(i, j)[0], now(i, j)[1]});
+    }
+    if (i >= first && i < first + strange) {
+      spots.push_back({now(i, now.cols - 1)[0] + print.pitch_px, now(i, 0)[1]});
+    }
+  }
+  DotPlaces found(truth.size());
+  CAPTURE(strange, first, jump);
+  CHECK(finder.label(spots, found).status == DotStatus::ambiguous);
+  CHECK(count_present(found) == 0);
+}
+
 TEST_CASE("dots: a print that reaches beyond the picture is followed by small steps") {
   Print print;
   print.rows = 14;
