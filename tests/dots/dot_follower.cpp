@@ -281,6 +281,55 @@ TEST_CASE("dot follower: after a jump of the whole print no label is wrong, and 
   CHECK(follower(picture, dots).ok());
 }
 
+TEST_CASE("dot follower: discs that stay round on a print that bends are followed", "[figures]") {
+  // beads in a gel, or the heads of pins: 9 x 9 discs
+  constexpr Index n = 9;
+  constexpr double apart_px = 25, radius_px = 7;
+  const auto places_of = [&](const Print& print) {
+    Dots dots(n, n);
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        const Point u = {double(j - n / 2), double(i - n / 2)};
+        dots(i, j) = Point{side / 2.0, side / 2.0} + apart_px * print.moved(u);
+      }
+    }
+    return dots;
+  };
+  const auto picture_of = [&](const Print& print) {
+    constexpr int rays = 8;
+    constexpr Index reach = 9;
+    test::Image<double> picture(side, side, print.light);
+    for (const Point& center : places_of(print).cells) {
+      const auto x = Index(center.x), y = Index(center.y);
+      for (Index i = y - reach; i <= std::min(y + reach, side - 1); ++i) {
+        for (Index j = x - reach; j <= std::min(x + reach, side - 1); ++j) {
+          int dark = 0;
+          for (int k = 0; k < rays * rays; ++k) {
+            const Point ray = {double(j) + 2 * (k % rays + 0.5) / rays - 1,
+                               double(i) + 2 * (k / rays + 0.5) / rays - 1};
+            dark += norm(ray - center) < radius_px ? 1 : 0;
+          }
+          picture(i, j) -= print.ink * print.light * dark / (rays * rays);
+        }
+      }
+    }
+    return picture;
+  };
+  const double noise = GENERATE(0.0, 1.0);
+  DotFollower follower(bytes_of(picture_of({}), noise), places_of({}), {.radius_px = radius_px});
+  Dots dots(n, n);
+  for (const double load : {0.3, 0.6, 1.0, 0.7, 0.2}) {
+    const Print print{.load = load};
+    const auto seen = follower(bytes_of(picture_of(print), noise, 2), dots);
+    const Errors e = errors_of(dots, places_of(print));
+    INFO("noise " << noise << ", load " << load << ", found " << seen.found << ", rms " << e.rms
+                  << ", worst " << e.worst);
+    CHECK(e.count == n * n);
+    CHECK(e.rms < 0.02);
+    CHECK(e.worst < 0.1);
+  }
+}
+
 TEST_CASE("dot follower: a picture without dots loses them all, and the next is followed again") {
   DotFollower follower = free_follower();
   Dots dots(count, count);

@@ -3,8 +3,9 @@
 #pragma once
 // Follows the printed dots of a pad from frame to frame, at the frame's speed and without OpenCV.
 // Each dot is expected where its last motion and its neighbours' motion in this frame put it. There
-// the picture of its disc, deformed as its neighbours say, is fitted to the pixels. A dot that does
-// not look like itself, or does not move with its neighbours, is lost, not guessed.
+// the picture of its disc, deformed as its neighbours say, is fitted to the pixels, or that of the
+// free pad if it fits better: beads in a gel stay round. A dot that does not look like itself, or
+// does not move with its neighbours, is lost, not guessed.
 //
 //   auto green = channel<const unsigned char>(free_frame, 1);       // any image type
 //   DotFollower follower(green, finder.free_px(), {.radius_px = finder.pattern().radius_px});

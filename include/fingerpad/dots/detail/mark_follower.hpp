@@ -4,8 +4,8 @@
 // Follows discs that are printed on a membrane, in whatever pattern. Each is expected where its
 // last motion and the deviation of the neighbours already found put it; there its disc of the free
 // pad, deformed by a polynomial of second order through the displacements of its neighbours, is
-// fitted to the pixels. What does not look like itself, or does not move with its neighbours, is
-// lost.
+// fitted to the pixels, or as it was where that fits better. What does not look like itself, or
+// does not move with its neighbours, is lost.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -373,7 +373,8 @@ class MarkFollower {
   /// Looks for a mark at its place.
   template <class View>
   bool locate(const View& image, std::size_t k, bool wide) {
-    constexpr double least_contrast = 0.6, most_contrast = 1.5, most_residual = 3;
+    constexpr double least_contrast = 0.6, most_contrast = 1.5;
+    constexpr double unusual_residual = 1.5, most_residual = 3;
     Mark& m = marks_[k];
     const Point guess = m.place;
     const auto d = displacement(k);
@@ -383,10 +384,17 @@ class MarkFollower {
     const double threshold = m.light * (1 - 0.4 * m.contrast), sign = m.contrast > 0 ? 1 : -1;
     const Point start =
         wide ? darkest(image, threshold, sign, guess, (std::min)(reach, m.look_px)) : guess;
-    const DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
+    const auto ratio_of = [&](const DiscFit& f) {
+      return f.residual / std::fabs(f.contrast * f.light * m.residual);
+    };
+    DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
+    if (!(ratio_of(fit) < unusual_residual * noise_)) {  // a bead, or the head of a pin, stays round
+      const DiscFit stiff = locator_.find(image, start, m.map, edge_px_, m.slope);
+      fit = stiff.good && !(ratio_of(fit) <= ratio_of(stiff)) ? stiff : fit;
+    }
     const double contrast = fit.contrast / m.contrast;
     m.placed = true;
-    m.residual_ratio = fit.residual / std::fabs(fit.contrast * fit.light * m.residual);
+    m.residual_ratio = ratio_of(fit);
     m.surprise_px = norm(fit.center - guess);
     m.likely =
         fit.good && contrast > least_contrast && contrast < most_contrast && m.surprise_px < reach;
