@@ -51,8 +51,8 @@ inline DotPlaces places_of(const test::GelDots& dots) {
   return places;
 }
 
-/// A ball of 10 mm is pressed into a gel by 1.2 N and dragged by 0.08 mm (2 px) a frame: dots of
-/// 20 px, 60 px apart.
+/// A ball of 10 mm is pressed into a gel by 1.2 N in the first two frames and then dragged by 0.09 mm
+/// (2.2 px) a frame: dots of 20 px, 60 px apart, which stay round.
 inline DotFrames gel_dots(const Filming& filming, int frames) {
   test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04, .noise = filming.noise};
   test::Random random(7);
@@ -60,7 +60,7 @@ inline DotFrames gel_dots(const Filming& filming, int frames) {
   DotFrames all{camera.pitch_px(), 10, {}, {}};
   for (int k = 0; k < frames; ++k) {
     const int at = k * filming.every;
-    ball.drag(std::min(0.2 * at, 1.2), {0.08 * std::max(at - 6, 0), 0.04 * std::max(at - 6, 0)});
+    ball.drag(std::min(0.6 * at, 1.2), {0.08 * std::max(at - 2, 0), 0.04 * std::max(at - 2, 0)});
     camera.exposure = 1 + filming.flicker * (k % 2 == 0 ? 1 : -1);
     all.truth.push_back(places_of(camera.true_dots(ball)));
     all.frames.push_back(test::mat_of(camera.frame(ball, random)));
