@@ -16,6 +16,7 @@ import sys
 import cv2
 import numpy as np
 
+LINES = csv.writer(sys.stdout, lineterminator="\n")
 CURVED = ("roll", "cylinder", "ball_slip", "rod_turn", "bowl", "two_balls")
 
 
@@ -48,10 +49,13 @@ class Judge:
         self.steps = table(scene + "/steps.csv")
         with open(scene + "/meta.json", encoding="utf-8") as file:
             self.base = json.load(file)["base_radius_mm"]
-        f = np.array([[number(r, k) for k in ("fx_n", "fy_n", "fz_n", "mx_nmm", "my_nmm", "mz_nmm",
-                                              "contact_area_mm2")] for r in self.forces])
+        self.loads = np.array([[number(r, k) for k in ("fx_n", "fy_n", "fz_n", "mx_nmm", "my_nmm",
+                                                       "mz_nmm", "contact_area_mm2")]
+                               for r in self.forces])
+        # full scale is the whole scene's, whichever of its steps were recorded
+        f = np.array([[number(r, k) for k in ("Fx", "Fy", "Fz", "Mx", "My", "Mz", "contact_area")]
+                      for r in self.steps])
         press, radius = np.abs(f[:, 2]).max(), math.sqrt(f[:, 6].max() / math.pi)
-        self.loads = f
         self.full = (max(np.hypot(f[:, 0], f[:, 1]).max(), 0.5 * press), press,
                      max(np.hypot(f[:, 3], f[:, 4]).max(), 0.9 * press * radius),
                      max(np.abs(f[:, 5]).max(), 0.3 * press * radius))
@@ -59,8 +63,8 @@ class Judge:
 
     def say(self, frame, quantity, error, limit, sd, sure):
         if error == error:
-            print("%s,%s,%d,%s,%.5g,%g,%.5g,%d" % (self.condition, self.name, frame, quantity, error,
-                                                   limit, sd, sure))
+            LINES.writerow([self.condition, self.name, frame, quantity, "%.5g" % error,
+                            "%g" % limit, "%.5g" % sd, int(sure)])
 
     def depth(self, k, row):
         camera = self.what["camera"]
@@ -93,7 +97,7 @@ class Judge:
         now = rotation(*(number(step, "obj_r" + q) for q in "xyz"))
         at = np.array([number(step, "obj_" + q) for q in "xyz"])
         if self.begun is None or self.begun[0] != row["object"]:
-            self.begun = (row["object"], now, at, place)
+            self.begun = (row["object"], now, at, place)  # its pose is the identity in this frame
             return
         _, first, first_at, first_place = self.begun
         moved = now @ first.T

@@ -1,16 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
-"""tables.py CSV ... [--errors | --by condition|scene] [--picture PNG]: what confident numbers are worth.
+"""tables.py CSV ... [--errors] [--by condition|scene] [--picture PNG] [--page PAGE NAME]
+
+What confident numbers are worth.
 
 Reads lines of `trust` and of judge.py. For each quantity: how many numbers are confident and wrong,
 confident and right, doubted and wrong, doubted and right; then whether standard deviations hold.
---by has one line for each condition or scene in place of one for all."""
+--by has one line for each condition or scene in place of one for all. --errors has mean and worst
+errors by condition or scene. --page writes what is printed otherwise into PAGE, between
+<!-- trust: NAME --> and the next <!-- end -->."""
 import argparse
+import contextlib
 import csv
+import io
 import statistics
 import sys
 
+UNITS = {"depth": ", mm", "contact": ", 1 - IoU", "rotation": ", deg", "place": ", mm",
+         "F_xy": ", %", "F_z": ", %", "M_xy": ", %", "M_z": ", %"}
 QUANTITIES = ("depth", "contact", "rotation", "place", "stick ratio", "F_xy", "F_z", "M_xy", "M_z")
 
 
@@ -52,19 +60,30 @@ def print_counts(rows, by):
             line([quantity] + ([name] if by else []) + n + ["%.1f" % per_mille, "%.0f" % sure])
 
 
-def print_errors(rows):
-    """Mean and worst error of each condition, in the units of trust and judge.py; in brackets how
-    many of the numbers beyond the limit are confident."""
+def print_frames(rows):
+    """Which scenes and how many of their frames; the conditions share them."""
+    print("Scenes: " + "; ".join(
+        "%s, up to %d frames" % (scene, max(
+            len({r["frame"] for r in rows if r["scene"] == scene and r["condition"] == name})
+            for name in {r["condition"] for r in rows}))
+        for scene in dict.fromkeys(r["scene"] for r in rows)) + ".\n")
+
+
+def print_errors(rows, by):
+    """Mean and worst error of each condition or scene; in brackets how many of the wrong numbers
+    are confident."""
     present = [q for q in QUANTITIES if any(r["quantity"] == q for r in rows)]
-    line(["condition"] + present)
-    line(["---"] + ["--:"] * len(present))
-    for name in dict.fromkeys(r["condition"] for r in rows):
-        cells = [name]
+    line([by, "frames"] + [q + UNITS.get(q, "") for q in present])
+    line(["---"] + ["--:"] * (len(present) + 1))
+    for name in dict.fromkeys(r[by] for r in rows):
+        cells = [name, len({(r["condition"], r["scene"], r["frame"]) for r in rows
+                            if r[by] == name and r["quantity"] != "refused"}) or "refused"]
         for quantity in present:
-            of = [r for r in rows if r["quantity"] == quantity and r["condition"] == name]
+            of = [r for r in rows if r["quantity"] == quantity and r[by] == name]
             if of:
-                errors = [r["error"] for r in of]
-                sure = sum(1 for r in of if r["sure"] and r["error"] > r["limit"])
+                per = 100 if UNITS.get(quantity) == ", %" else 1
+                errors = [per * r["error"] for r in of]
+                sure = sum(1 for r in of if r["sure"] and r["wrong"])
                 cells.append("%.2g / %.2g%s" % (statistics.fmean(errors), max(errors),
                                                 " (%d)" % sure if sure else ""))
             else:
@@ -114,17 +133,11 @@ def draw(rows, file):
     figure.savefig(file, dpi=110)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("csv", nargs="+")
-    parser.add_argument("--by", choices=("condition", "scene"))
-    parser.add_argument("--errors", action="store_true", help="mean and worst by condition")
-    parser.add_argument("--picture")
-    options = parser.parse_args()
-    rows = read(options.csv)
+def print_tables(rows, options):
     if options.errors:
-        print_errors(rows)
-        return 0
+        print_errors(rows, options.by or "condition")
+        return
+    print_frames(rows)
     head = ["quantity"] + ([options.by] if options.by else [])
     line(head + ["confident, wrong", "confident, right", "doubted, wrong", "doubted, right",
                  "of 1,000 confident, wrong", "of 100 right, confident"])
@@ -132,8 +145,33 @@ def main():
     print_counts(rows, options.by)
     print()
     print_sd(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("csv", nargs="+")
+    parser.add_argument("--by", choices=("condition", "scene"))
+    parser.add_argument("--errors", action="store_true", help="mean and worst, by condition or scene")
+    parser.add_argument("--picture")
+    parser.add_argument("--page", nargs=2, metavar=("PAGE", "NAME"))
+    options = parser.parse_args()
+    rows = read(options.csv)
     if options.picture:
         draw(rows, options.picture)
+    if not options.page:
+        print_tables(rows, options)
+        return 0
+    text = io.StringIO()
+    with contextlib.redirect_stdout(text):
+        print_tables(rows, options)
+    page, name = options.page
+    with open(page, encoding="utf-8") as file:
+        before, begin, rest = file.read().partition("<!-- trust: %s -->\n" % name)
+    _, end, after = rest.partition("<!-- end -->")
+    if not end:
+        sys.exit("%s has no <!-- trust: %s --> with an <!-- end -->" % (page, name))
+    with open(page, "w", encoding="utf-8") as file:
+        file.write(before + begin + "\n" + text.getvalue() + "\n" + end + after)
     return 0
 
 

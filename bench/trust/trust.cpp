@@ -5,7 +5,7 @@
 //   condition,scene,frame,quantity,error,limit,sd,confident
 // An error beyond the limit, or beyond five of its standard deviations, is wrong. Errors and limits
 // of forces are shares of full scale: the largest of the scene, or what its largest press would
-// give (bench/trust/README.md).
+// give (docs/trust.md).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
