@@ -27,8 +27,11 @@ struct Bench {
 
   template <int Step>
   static Image<double> means(const Image<double>& depth_mm) {
-    const auto of = sampled(
-        DepthReference<double>{depth_mm.rows(), depth_mm.cols(), depth_mm.cells, {}, {}}, Step);
+    DepthReference<double> reference;
+    reference.rows = depth_mm.rows();
+    reference.cols = depth_mm.cols();
+    reference.depth_mm = depth_mm.cells;
+    const auto of = sampled(reference, Step);
     Image<double> out(of.rows, of.cols);
     out.cells = of.depth_mm;
     return out;

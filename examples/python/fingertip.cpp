@@ -28,17 +28,20 @@ class Fingertip {
 
   FingertipResult operator()(const Array& red,
                              const Array& green,
-                             const Array& dots_px,
+                             const std::optional<Array>& dots_px,
                              const Number& pressure,
                              const Number& time) {
     const double pressure_mpa = number_of(pressure, "pressure_mpa");
     const double time_s = number_of(time, "time_s");
     const auto red_view = view_of<std::uint8_t>(red, "red");
     const auto green_view = view_of<std::uint8_t>(green, "green");
-    const auto dots = dots_px_of(dots_px, "dots_px");
-    const py::gil_scoped_release release;
-    const std::scoped_lock lock(mutex_);
-    return fingertip_(red_view, green_view, dots, pressure_mpa, time_s);
+    const auto measure = [&](const auto& dots) {
+      const py::gil_scoped_release release;
+      const std::scoped_lock lock(mutex_);
+      return fingertip_(red_view, green_view, dots, pressure_mpa, time_s);
+    };
+    return dots_px ? measure(dots_px_of(*dots_px, "dots_px"))
+                   : measure(fingerpad::StridedView<const fingerpad::Point2<double>>());
   }
 
   /// A copy of the view that `show` returns for the last frame.
@@ -50,6 +53,20 @@ class Fingertip {
     for (Index i = 0; i < view.rows(); ++i) {
       for (Index j = 0; j < view.cols(); ++j) {
         cells(i, j) = static_cast<T>(view(i, j));
+      }
+    }
+    return array;
+  }
+
+  py::array_t<double> found_dots() {
+    const std::scoped_lock lock(mutex_);
+    const auto dots = fingertip_.dots_px();
+    py::array_t<double> array({dots.rows(), dots.cols(), Index(2)});
+    auto cells = array.mutable_unchecked<3>();
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        cells(i, j, 0) = dots(i, j).x;
+        cells(i, j, 1) = dots(i, j).y;
       }
     }
     return array;
@@ -77,7 +94,10 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
                                 const std::optional<fingerpad::Shear<>>& shear,
                                 bool shear_by_depth,
                                 const Count& smoothing_px,
-                                const Number& dot_radius_px) {
+                                const Number& dot_radius_px,
+                                const std::optional<Array>& free_red,
+                                const std::optional<Array>& free_green,
+                                const std::optional<Array>& free_dots_px) {
   Options options{camera, fluid, reference};
   options.sampling = 1;      // depth at every pixel, because Python reads whole arrays
   options.flat_area = true;  // also without a curve
@@ -92,6 +112,14 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
   options.shear_by_depth = shear_by_depth;
   options.smoothing_px = count_of<int>(smoothing_px, "smoothing_px");
   options.dot_radius_px = number_of(dot_radius_px, "dot_radius_px");
+  if (free_red && free_green && free_dots_px) {
+    const auto light = fingerpad::mean_light(view_of<std::uint8_t>(*free_red, "free_red"),
+                                             view_of<std::uint8_t>(*free_green, "free_green"));
+    options.dot_follower.emplace(light, dots_px_of(*free_dots_px, "free_dots_px"),
+                                 fingerpad::DotFollowerOptions{.radius_px = options.dot_radius_px});
+  } else if (free_red || free_green || free_dots_px) {
+    throw py::value_error("free_red, free_green and free_dots_px are given together");
+  }
   return std::make_unique<Fingertip>(options);
 }
 
@@ -154,7 +182,7 @@ void bind_slip_result(py::module_& module) {
       .def_readonly("margin", &Slip::margin);
 }
 
-void bind_shift_and_area(py::module_& module) {
+void bind_shift_dots_and_area(py::module_& module) {
   using Shift = fingerpad::ShiftResult<double>;
   py::class_<Shift>(module, "ShiftResult",
                     "Displacement and rotation of a contact; see motion/contact_shift.hpp.")
@@ -166,6 +194,13 @@ void bind_shift_and_area(py::module_& module) {
           "(x, y) in the unit of the dots; mm for a Fingertip")
       .def_readonly("rotation_rad", &Shift::rotation_rad)
       .def_readonly("residual_rms", &Shift::residual_rms);
+  using Dots = fingerpad::DotFollowerResult;
+  py::class_<Dots>(module, "DotFollowerResult",
+                   "Printed dots found in a frame; see dots/dot_follower.hpp.")
+      .def_property_readonly("ok", &Dots::ok)
+      .def_property_readonly("status", [](const Dots& r) { return name_of(r.status); })
+      .def_readonly("found", &Dots::found)
+      .def_readonly("expected", &Dots::expected);
   using FlatArea = fingerpad::FlatAreaResult<double>;
   py::class_<FlatArea>(
       module, "FlatAreaResult",
@@ -192,6 +227,7 @@ void bind_result(py::module_& module) {
       .def_property_readonly(
           "neighbour_light", [](const Result& r) { return name_of(r.neighbour_light); },
           "whether the depths suited the removal of neighbouring light")
+      .def_readonly("dots", &Result::dots, "of the frame, if the fingertip finds them")
       .def_readonly("contact", &Result::contact)
       .def_readonly("motion", &Result::motion)
       .def_readonly("stick", &Result::stick, "by the dots")
@@ -212,7 +248,7 @@ void bind_result(py::module_& module) {
 void bind_fingertip(py::module_& module) {
   bind_motion_result(module);
   bind_slip_result(module);
-  bind_shift_and_area(module);
+  bind_shift_dots_and_area(module);
   bind_result(module);
   py::class_<Fingertip>(
       module, "Fingertip",
@@ -224,17 +260,22 @@ void bind_fingertip(py::module_& module) {
            py::arg("force_of_area") = py::none(), py::arg("force_of_depth") = py::none(),
            py::arg("shear") = py::none(), py::arg("shear_by_depth") = false,
            py::arg("smoothing_px") = py::int_(29), py::arg("dot_radius_px") = py::float_(0.0),
+           py::arg("free_red") = py::none(), py::arg("free_green") = py::none(),
+           py::arg("free_dots_px") = py::none(),
            "free_dots_mm: float32 or float64 (rows, cols, 3), the printed dots of the free pad, "
            "NaN: none;\n"
            "(0, 0, 3): no results from dots. wrench: WrenchOptions; None: no six-axis force.\n"
            "force_of_area, force_of_depth: NormalForce; shear: Shear. Without them no forces are\n"
-           "looked up.")
-      .def("__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"), py::arg("dots_px"),
-           py::arg("pressure_mpa"),
+           "looked up. free_red, free_green, free_dots_px: the free pad; with them the fingertip\n"
+           "finds the dots itself, of dot_radius_px.")
+      .def("__call__", &Fingertip::operator(), py::arg("red"), py::arg("green"),
+           py::arg("dots_px") = py::none(),
+           py::arg("pressure_mpa") = py::float_(fingerpad::not_a_number<double>()),
            py::arg("time_s") = py::float_(fingerpad::not_a_number<double>()),
            "touch = fingertip(red, green, dots_px, pressure_mpa, time_s)\n\n"
            "red, green: uint8 (rows, cols). dots_px: float32 or float64 (rows, cols, 2), NaN where "
-           "not found.\n"
+           "not found;\n"
+           "None: found in the frame, or none.\n"
            "pressure_mpa: MPa above the air pressure. time_s: s.\n"
            "For arrays of another size the status is \"refused\".")
       .def_property_readonly(
@@ -247,6 +288,9 @@ void bind_fingertip(py::module_& module) {
             return f.copied<std::uint8_t>([](auto& tip) { return tip.contact_mask(); });
           },
           "uint8 (rows, cols) of the last frame, 255 in contact")
+      .def_property_readonly(
+          "dots_px", [](Fingertip& f) { return f.found_dots(); },
+          "float64 (rows, cols, 2): dots found in the last frame, NaN: lost")
       .def_property_readonly(
           "dot_states",
           [](Fingertip& f) {

@@ -408,6 +408,30 @@ def test_fits_have_the_bits_of_cpp_and_are_looked_up(pad, tmp_path):
     assert touch.by_depth.force_n == by_depth(touch.contact.depth_mm).force_n
 
 
+def test_a_fingertip_finds_its_dots(pad):
+    columns, rows = np.meshgrid(np.arange(7.0), np.arange(7.0))
+    free_px = np.stack([columns * 20 + 180, rows * 20 + 180], axis=-1)
+    free_mm = np.stack([(columns - 3) * 1.6, (rows - 3) * 1.6, np.full((7, 7), 12.5)], axis=-1)
+
+    def printed(move):
+        y, x = np.mgrid[:480, :480]
+        far = np.full((480, 480), np.inf)
+        for px, py in (free_px + move).reshape(-1, 2):
+            far = np.minimum(far, np.hypot(x - px, y - py))
+        return (150 - 100 * np.clip(5.5 - far, 0, 1)).astype(np.uint8)
+
+    free = printed([0, 0])
+    given = dict(contact=fp.ContactTest(free_apex_mm=13.03), dot_radius_px=5.0)
+    fingertip = fp.Fingertip(*pad, free_mm, free_red=free, free_green=free, free_dots_px=free_px,
+                             **given)
+    frame = printed([1.3, -0.8])
+    touch = fingertip(frame, frame)
+    assert touch.dots.ok and touch.dots.found == touch.dots.expected == 49
+    np.testing.assert_allclose(fingertip.dots_px, free_px + [1.3, -0.8], atol=0.05)
+    with pytest.raises(ValueError, match="given together"):
+        fp.Fingertip(*pad, free_mm, free_red=free, **given)
+
+
 def test_a_fingertip_gives_what_its_parts_give(pad, estimate):
     columns, rows = np.meshgrid(np.arange(7), np.arange(7))
     free_dots = np.stack([columns - 3.0, rows - 3.0, np.full((7, 7), 12.5)], axis=-1)

@@ -267,9 +267,11 @@ TEST_CASE("pixels strictly between two limits, at the ends of their range", "[wi
   const auto range_of = [](auto pixel, double units, double dark, double saturated) {
     using Pixel = decltype(pixel);
     const Index n = Index((std::numeric_limits<Pixel>::max)()) + 1;
-    DepthReference<float> reference{
-        1,  n, std::vector<float>(std::size_t(n), 1.0F), std::vector<float>(std::size_t(n), 0.02F),
-        {}, n};
+    DepthReference<float> reference;
+    reference.rows = 1;
+    reference.cols = reference.pixels_used = n;
+    reference.depth_mm.assign(std::size_t(n), 1.0F);
+    reference.scattering.assign(std::size_t(n), 0.02F);
     detail::ColourRows<float> rows({}, {}, reference, {0, 0, 1, n}, 1, 1);
     const LazyView level(1, n, [](Index, Index j) { return static_cast<Pixel>(j); });
     std::vector<float> red(std::size_t(n + 64)), green = red;
