@@ -163,9 +163,9 @@ def chain_samples(runs):
         error = lambda quantity: " / ".join(number(of[-1]["errors"][quantity][s])
                                             for s in ("median", "99 %"))
         return [f"{of[0]['policies']}, {of[0]['step']} px", *(number(o["whole_ms"], 3) for o in of),
-                *(error(q) for q in ("depth of a pixel", "contact area", "F_z", "M_z"))]
+                *(error(q) for q in ("depth of a pixel", "contact area"))]
     return table(["chain, step", *(f"{flags}, ms" for flags in runs), "depth of a pixel, mm",
-                  "contact area, share", "F_z, share", "M_z, N mm"],
+                  "contact area, share"],
                  map(row, zip(*(run["samples"] for run in runs.values()))))
 
 

@@ -18,9 +18,10 @@ plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.righ
                      "axes.grid": True, "grid.alpha": 0.25, "figure.dpi": 110})
 
 
-def save(figure, path):
-    figure.tight_layout()
-    figure.savefig(path)
+def save(figure, path, crop=None):
+    if crop is None:
+        figure.tight_layout()
+    figure.savefig(path, bbox_inches=crop)
     plt.close(figure)
     with Image.open(path) as drawn:  # lines and letters need few colours
         drawn.convert("RGB").quantize(48, dither=Image.Dither.NONE).save(path, optimize=True)
@@ -102,8 +103,7 @@ def pareto(title, rows, path):
                   fontsize=8, va="center", color=colour)
     figure.subplots_adjust(right=0.6)
     number_points(axes, points, hollow, [colour for _, colour in names])
-    figure.savefig(path, bbox_inches="tight")
-    plt.close(figure)
+    save(figure, path, "tight")
 
 
 def peers(tables, path):
@@ -114,17 +114,20 @@ def peers(tables, path):
         rows = [[c.strip() for c in line.strip("|").split("|")] for line in text.splitlines()
                 if line.startswith("|") and not line.startswith(("|--", "| Method"))]
         for name, ms, *cells in rows:
+            if name.startswith("the same"):
+                continue
             colour = OURS if name.startswith("`") else YARDSTICK
             errors = [float(m[0]) for m in (re.match(r"[\d.]+", c) for c in cells) if m]
             lost = [float(m[1]) for m in (re.search(r"; ([\d.e+]+) %", c) for c in cells) if m]
             few = max(lost, default=0) < 5 and len(errors) == len(cells)
             axes.plot([float(ms)] * 2, [min(errors), max(errors)], color=colour, lw=1)
             axes.plot(float(ms), errors[0], "o", color=colour, mfc=colour if few else "white", ms=6)
-            axes.annotate(name.replace("`", ""), (float(ms), errors[0]), xytext=(6, -10 if name == "the same, from the free pad" else 4),
-                          textcoords="offset points", fontsize=7, color=colour)
+            axes.annotate(name.replace("`", "").split(",")[0], (float(ms), errors[0]), textcoords="offset points",
+                          xytext=(6, -11 if name == "`DotFinder`" else 4), fontsize=7, color=colour)
         axes.set_title(title, loc="left", weight="bold")
         axes.set(xscale="log", yscale="log", ylabel="error, px")
         axes.margins(x=0.3, y=0.25)
+        logarithmic(axes.xaxis, "x")
     panels[-1].set_xlabel("time of a frame, ms (dot: clean; line: all conditions; hollow: over 5 % lost in one)")
     save(figure, path)
 
