@@ -763,13 +763,7 @@ namespace {
 
 /// A pad of 75 x 81 pixels of 0.55 mm.
 Pad fine_pad() {
-  Pad pad;
-  pad.rows = 75;
-  pad.cols = 81;
-  pad.camera.pitch_mm = 0.55;
-  pad.camera.center_x_px = 40;
-  pad.camera.center_y_px = 37;
-  return pad;
+  return test::pad_of(75, 81, 0.55);
 }
 
 /// Adds clumps of bad pixels, each of one kind, until they cover a share of the frame.

@@ -13,16 +13,6 @@ using test::Image;
 
 namespace {
 
-test::Pad fine_pad() {
-  test::Pad pad;
-  pad.rows = 240;
-  pad.cols = 280;
-  pad.camera.pitch_mm = 0.16;
-  pad.camera.center_x_px = 139.5;
-  pad.camera.center_y_px = 119.5;
-  return pad;
-}
-
 /// A frame as a lamp or camera with these gains gives it.
 test::Frame<double> frame_of(const test::Pad& pad,
                              const Image<double>& depth_mm,
@@ -70,7 +60,7 @@ constexpr LightGains changes[] = {{1, 1}, {0.97, 0.97}, {0.9, 0.9}, {1, 1.01}, {
 }  // namespace
 
 TEST_CASE("a free frame tells its light, whatever the height of the pad", "[free light]") {
-  const test::Pad pad = fine_pad();
+  const test::Pad pad = test::pad_of(240, 280, 0.16);
   const FreeLight<float> light(pad.camera, pad.fluid, pad.reference<float>());
   for (const double height : {1.0, 0.98, 1.02}) {
     auto depth_mm = pad.free_depths();
@@ -87,7 +77,7 @@ TEST_CASE("a free frame tells its light, whatever the height of the pad", "[free
 }
 
 TEST_CASE("the light's standard deviation is that of its errors", "[free light]") {
-  const test::Pad pad = fine_pad();
+  const test::Pad pad = test::pad_of(240, 280, 0.16);
   const FreeLight<float> light(pad.camera, pad.fluid, pad.reference<float>());
   double squares = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -99,7 +89,7 @@ TEST_CASE("the light's standard deviation is that of its errors", "[free light]"
 }
 
 TEST_CASE("dirt on a tenth of the pad is not its light", "[free light]") {
-  const test::Pad pad = fine_pad();
+  const test::Pad pad = test::pad_of(240, 280, 0.16);
   const FreeLight<float> light(pad.camera, pad.fluid, pad.reference<float>());
   auto frame = frame_of(pad, pad.free_depths(), {0.97, 1}, 1);
   for (Index i = 80; i < 160; ++i) {
@@ -115,7 +105,7 @@ TEST_CASE("dirt on a tenth of the pad is not its light", "[free light]") {
 
 TEST_CASE("depth under another light is that under the reference's once the light is known",
           "[free light]") {
-  const test::Pad pad = fine_pad();
+  const test::Pad pad = test::pad_of(240, 280, 0.16);
   const auto reference = pad.reference<float>();
   const FreeLight<float> light(pad.camera, pad.fluid, reference);
   const auto pressed_mm = pad.pressed_depths(2);

@@ -137,13 +137,7 @@ const Mistake with_the_reference[] = {
 
 /// A camera with a realistic resolution of the pad, and frames under another light.
 Pad fine_pad() {
-  Pad pad;
-  pad.rows = 240;
-  pad.cols = 320;
-  pad.camera.pitch_mm = 0.16;
-  pad.camera.center_x_px = 159.5;
-  pad.camera.center_y_px = 119.5;
-  return pad;
+  return test::pad_of(240, 320, 0.16);
 }
 
 struct FrameMistake {

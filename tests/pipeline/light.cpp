@@ -14,13 +14,8 @@ using test::Image;
 
 namespace {
 
-test::Pad fine_pad() {
-  test::Pad pad;
-  pad.rows = 240;
-  pad.cols = 280;
-  pad.camera.pitch_mm = 0.16;
-  pad.camera.center_x_px = 139.5;
-  pad.camera.center_y_px = 119.5;
+test::Pad bright_pad() {
+  test::Pad pad = test::pad_of(240, 280, 0.16);
   pad.brightness = 120;
   pad.scattering *= 120 / 57.0;
   return pad;
@@ -29,7 +24,7 @@ test::Pad fine_pad() {
 /// Plays frames of a pad, free or pressed by 2 mm, under any light.
 class Player {
  public:
-  Player() : pad_(fine_pad()), fingertip_(options_of(pad_)) {}
+  Player() : pad_(bright_pad()), fingertip_(options_of(pad_)) {}
 
   FingertipResult operator()(bool pressed, double green, double red) {
     depth_mm_ = pressed ? pad_.pressed_depths(2) : pad_.free_depths();

@@ -205,6 +205,17 @@ struct Pad {
   }
 };
 
+/// A pad in the middle of such frames.
+inline Pad pad_of(Index rows, Index cols, double pitch_mm) {
+  Pad pad;
+  pad.rows = rows;
+  pad.cols = cols;
+  pad.camera.pitch_mm = pitch_mm;
+  pad.camera.center_x_px = static_cast<double>(cols - 1) / 2;
+  pad.camera.center_y_px = static_cast<double>(rows - 1) / 2;
+  return pad;
+}
+
 /// Results of an estimator for one frame.
 template <class S>
 struct Estimate {

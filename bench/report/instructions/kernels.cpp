@@ -16,16 +16,6 @@ using namespace fingerpad;
 
 namespace {
 
-test::Pad pad_of_320_x_240() {
-  test::Pad pad;
-  pad.rows = 240;
-  pad.cols = 320;
-  pad.camera.pitch_mm = 0.1536;
-  pad.camera.center_x_px = 159.5;
-  pad.camera.center_y_px = 119.5;
-  return pad;
-}
-
 bool samples(const test::Frame<std::uint8_t>& frame, int step, int calls) {
   const Index rows = frame.red.rows() / step, cols = frame.red.cols() / step;
   test::Image<std::uint16_t> red(rows, cols), green(rows, cols);
@@ -68,7 +58,7 @@ bool contact(const test::Pad& pad, const test::Image<double>& pressed_mm, int ca
 int main(int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "";
   const int calls = argc > 2 ? std::atoi(argv[2]) : 1;
-  const test::Pad pad = pad_of_320_x_240();
+  const test::Pad pad = test::pad_of(240, 320, 0.1536);
   const auto pressed_mm = pad.pressed_depths(3);
   const auto frame = pad.frame<std::uint8_t>(pressed_mm);
   const bool done = name == "samples3"   ? samples(frame, 3, calls)

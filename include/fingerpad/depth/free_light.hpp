@@ -22,6 +22,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -146,7 +147,9 @@ class FreeLight {
     double scale = 0.05;                    // of the residuals, mm and shares alike
     FreeLightResult result;
     for (int round = 0; round < 5; ++round) {
-      double a[3][3] = {}, b[3] = {}, squares = 0, weights = 0, count = 0;
+      std::array<std::array<double, 3>, 3> a{};
+      std::array<double, 3> b{};
+      double squares = 0, weights = 0, count = 0;
       double by_green = 0, by_balance = 0;
       const auto add = [&](const std::array<double, 3>& by, double residual) {
         const double w = 1 / (1 + square(residual / (2 * scale)));
@@ -176,10 +179,11 @@ class FreeLight {
         by_green += block.scattered * block.depth_mm / block.slope;
         by_balance += r * block.depth_mm / block.slope;
       }
-      double step[3], of_green = 0, of_balance = 0;
-      if (count < 50 || !solve(a, b, step, of_green, of_balance)) {
+      const detail::NormalEquations<double, 3> equations(a);
+      if (count < 50 || !equations.good) {
         return std::nullopt;
       }
+      const auto step = equations.solve(b);
       green += step[0];
       red += step[1];
       height += step[2];
@@ -187,40 +191,14 @@ class FreeLight {
       if (!(std::abs(green) < 0.5) || !(std::abs(red) < 0.5)) {
         return std::nullopt;
       }
-      result = {{std::exp(-green), std::exp(-red)}, 1 + height,       scale * std::sqrt(of_green),
-                scale * std::sqrt(of_balance),      by_green / count, by_balance / count};
+      result = {{std::exp(-green), std::exp(-red)},
+                1 + height,
+                scale * std::sqrt(equations.variance({1, 0, 0})),
+                scale * std::sqrt(equations.variance({1, -1, 0})),
+                by_green / count,
+                by_balance / count};
     }
     return result;
-  }
-
-  /// x of a x = b, and the variances of x[0] and x[0] - x[1] for a unit weight. False for a
-  /// singular matrix.
-  static bool solve(const double (&a)[3][3],
-                    const double (&b)[3],
-                    double (&x)[3],
-                    double& of_green,
-                    double& of_balance) {
-    double inverse[3][3], determinant = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const int p = (j + 1) % 3, q = (j + 2) % 3, r = (i + 1) % 3, s = (i + 2) % 3;
-        inverse[i][j] = a[p][r] * a[q][s] - a[p][s] * a[q][r];
-      }
-      determinant += inverse[i][0] * a[0][i];
-    }
-    if (!(std::abs(determinant) > 1e-12 * a[0][0] * a[1][1] * a[2][2])) {
-      return false;
-    }
-    for (int i = 0; i < 3; ++i) {
-      x[i] = 0;
-      for (int j = 0; j < 3; ++j) {
-        inverse[i][j] /= determinant;
-        x[i] += inverse[i][j] * b[j];
-      }
-    }
-    of_green = inverse[0][0];
-    of_balance = inverse[0][0] + inverse[1][1] - 2 * inverse[0][1];
-    return of_green > 0 && of_balance > 0;
   }
 
   Index rows_, cols_, width_ = 2;
