@@ -388,9 +388,10 @@ class MarkFollower {
       return f.residual / std::fabs(f.contrast * f.light * m.residual);
     };
     DiscFit fit = locator_.find(image, start, map, edge_px_, m.slope);
-    if (!(ratio_of(fit) < unusual_residual * noise_)) {  // a bead, or the head of a pin, stays round
+    if (fit.good && ratio_of(fit) > unusual_residual * noise_) {
+      // a bead, or the head of a pin, stays round
       const DiscFit stiff = locator_.find(image, start, m.map, edge_px_, m.slope);
-      fit = stiff.good && !(ratio_of(fit) <= ratio_of(stiff)) ? stiff : fit;
+      fit = stiff.good && ratio_of(stiff) < ratio_of(fit) ? stiff : fit;
     }
     const double contrast = fit.contrast / m.contrast;
     m.placed = true;
