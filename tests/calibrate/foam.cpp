@@ -265,8 +265,8 @@ TEST_CASE("taxel noise: what shakes is no noise", "[taxel_noise]") {
           common = period > 0 ? std::sqrt(2) * std::sin(2 * std::numbers::pi * double(k) / period)
                               : gaussian(random);
         }
-        return 800 + 7 * (std::sqrt(p) * ((i + j) % 2 == 0 ? 1 : -1) * common +
-                          std::sqrt(1 - p) * noise);
+        return 800 +
+               7 * (std::sqrt(p) * ((i + j) % 2 == 0 ? 1 : -1) * common + std::sqrt(1 - p) * noise);
       };
       const TaxelNoise noise = recorded(4, 5, 16 * 40, 3, reading).fit();
       CHECK(noise.shared == Approx(p).margin(p > 0 ? 0.1 : 0.16));
@@ -280,9 +280,12 @@ TEST_CASE("taxel noise: what shakes is no noise", "[taxel_noise]") {
   CHECK_FALSE(recorded(1, 3, 16 * 8, 1, shaken).fit().ok());
   CHECK(std::isnan(recorded(1, 2, 16 * 8, 1, shaken).fit().shared));  // two cannot tell
   // an object that shakes in a third of the windows does not count
-  CHECK(recorded(4, 5, 16 * 30, 1, [&](Index k, Index i, Index j, double noise) {
-          return k % 48 < 16 ? shaken(k, i, j, noise) : 800 + noise;
-        }).fit().ok());
+  CHECK(recorded(4, 5, 16 * 30, 1,
+                 [&](Index k, Index i, Index j, double noise) {
+                   return k % 48 < 16 ? shaken(k, i, j, noise) : 800 + noise;
+                 })
+            .fit()
+            .ok());
 }
 
 TEST_CASE("taxel noise: how still the centroid is", "[taxel_noise]") {

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Mistakes with depth and contact, and the response to each.
-#include "fingerpad/depth/depth.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/contact/surface.hpp"
+#include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/depth/neighbour_light.hpp"

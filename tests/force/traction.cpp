@@ -506,7 +506,8 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
   CHECK(modulus(0.5) == "accepted");
   CHECK(test::begins_with(modulus(0), "TractionOptions: mu_t_n_per_mm = 0, must be"));
   CHECK(test::begins_with(modulus(missing), "TractionOptions: mu_t_n_per_mm = "));
-  CHECK(test::begins_with(with({.mooney_share = 1.1}), "TractionOptions: mooney_share = 1.1, must"));
+  CHECK(
+      test::begins_with(with({.mooney_share = 1.1}), "TractionOptions: mooney_share = 1.1, must"));
   CHECK(test::begins_with(with({.min_free_dots = 0}), "TractionOptions: min_free_dots = 0, must"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(2, 5)); }),
                           "TractionField: rows = 2, must be"));

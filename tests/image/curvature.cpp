@@ -658,8 +658,7 @@ double map_error(const CameraType& camera) {
   CurvatureMap<S> map(camera, size, size, ring);
   CurvatureMap<Digits50> reference(camera, size, size, ring);
   std::array<Image<S>, 2> k = {Image<S>(size, size), Image<S>(size, size)};
-  std::array<Image<Digits50>, 2> truth = {Image<Digits50>(size, size),
-                                          Image<Digits50>(size, size)};
+  std::array<Image<Digits50>, 2> truth = {Image<Digits50>(size, size), Image<Digits50>(size, size)};
   (void)map(depth, k[0], k[1]);
   (void)reference(exact, truth[0], truth[1]);
   const std::size_t of = Clamped ? 0 : 1;

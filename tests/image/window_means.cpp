@@ -187,10 +187,7 @@ TEMPLATE_TEST_CASE("a block has the means of a million pixels one by one",
   CHECK(missing > 1000);
 }
 
-TEMPLATE_TEST_CASE("rounding does not pile up down a long image",
-                   "[window]",
-                   float,
-                   double) {
+TEMPLATE_TEST_CASE("rounding does not pile up down a long image", "[window]", float, double) {
   // A bright band followed by 400 rows of 1e-3 of it: a remainder of the band would be visible.
   using S = TestType;
   const Index rows = 440;

@@ -140,9 +140,9 @@ TEST_CASE("replay: force and moment of the bundled recording", "[wrench]") {
 TEST_CASE("replay: a number is uncertain for a small full scale", "[wrench]") {
   const auto uncertain = [](double full_scale_n) {
     const Workplace work;
-    work.replace("sensor.json", "\"membrane_modulus_n_per_mm\"",
-                 "\"full_scale_n\": " + std::to_string(full_scale_n) +
-                     ", \"membrane_modulus_n_per_mm\"");
+    work.replace(
+        "sensor.json", "\"membrane_modulus_n_per_mm\"",
+        "\"full_scale_n\": " + std::to_string(full_scale_n) + ", \"membrane_modulus_n_per_mm\"");
     const auto found = work.run({});
     return std::count_if(found.begin(), found.end(), [](const Line& line) {
       return is_full(line) && line.at("wrench_status") == "uncertain";

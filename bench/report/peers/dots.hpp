@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Printed dots followed by what users of OpenCV write, and by fingerpad, in the same frames. Methods
-// that find spots without a name take that of the nearest dot of the frame before; in the first
-// frame the truth names them.
+// Printed dots followed by what users of OpenCV write, and by fingerpad, in the same frames.
+// Methods that find spots without a name take that of the nearest dot of the frame before; in the
+// first frame the truth names them.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -51,8 +51,8 @@ inline DotPlaces places_of(const test::GelDots& dots) {
   return places;
 }
 
-/// A ball of 10 mm is pressed into a gel by 1.2 N in the first two frames and then dragged by 0.09 mm
-/// (2.2 px) a frame: dots of 20 px, 60 px apart, which stay round.
+/// A ball of 10 mm is pressed into a gel by 1.2 N in the first two frames and then dragged by 0.09
+/// mm (2.2 px) a frame: dots of 20 px, 60 px apart, which stay round.
 inline DotFrames gel_dots(const Filming& filming, int frames) {
   test::GelCamera camera{.rows = 480, .cols = 640, .mm_per_px = 0.04, .noise = filming.noise};
   test::Random random(7);

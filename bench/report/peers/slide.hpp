@@ -109,8 +109,10 @@ inline Travel corners() {
     if (!state->before.empty()) {
       std::vector<cv::Point2f> from, to;
       cv::Mat middle(grey.size(), CV_8U, cv::Scalar(0));
-      cv::circle(middle, {grey.cols / 2 + cvRound(state->travel.x),
-                          grey.rows / 2 + cvRound(state->travel.y)}, grey.rows / 4, 255, -1);
+      cv::circle(
+          middle,
+          {grey.cols / 2 + cvRound(state->travel.x), grey.rows / 2 + cvRound(state->travel.y)},
+          grey.rows / 4, 255, -1);
       cv::goodFeaturesToTrack(state->before, from, 100, 0.01, 8, middle);
       if (!from.empty()) {
         std::vector<unsigned char> found;

@@ -217,8 +217,7 @@ std::vector<Change> changes(const replay::Sensor& sensor,
       {"red over green, %", 100 * std::expm1(balance.value), 100 * balance.sd,
        // A membrane does not rise as a cap does: over pads of rubber 9 to 14.5 mm high on a base of
        // 18.7 mm, up to 1 mm higher or lower, this hides at most 1.4 % for each mm that is found.
-       0.6 + 1.5 * std::abs(apex.value),
-       "white balance of the camera; else absorption"},
+       0.6 + 1.5 * std::abs(apex.value), "white balance of the camera; else absorption"},
       {"height of the apex, mm", apex.value, apex.sd, 0.1,
        "fill the pad to its height; else shape, absorption, contact, rim"},
       {"place in the picture, px", cv::norm(moved), 0, still_px, "camera, and all that follows"},

@@ -205,7 +205,8 @@ Rim read_rim(const Section& root) {
        {"stress_free_inclination_rad", "inclination of the stress-free membrane at the rim, rad"},
        {"mooney_share", "C2 / (C1 + C2) of the rubber; 0 (neo-Hookean) if absent"},
        {"membrane_thickness_mm", "thickness of the membrane, which bends where it is clamped, mm"},
-       {"full_scale_n", "the largest press to expect, N; a quarter of pressure times base if absent"},
+       {"full_scale_n",
+        "the largest press to expect, N; a quarter of pressure times base if absent"},
        {"side_dots", "rows of dots around the rim, which are found in the pictures"}});
   Rim rim;
   if (section.has("membrane_modulus_n_per_mm")) {

@@ -254,8 +254,7 @@ bool descend(const AbsorptionProblem<S, Degree>& problem,
     const S step = at_limit ? down_c / cc : (dd * down_c - cd * down_delta) / determinant;
     const S c_red = p.c_red * exp((std::max)(S(-1), (std::min)(step, S(1))));
     const S delta =
-        at_limit ? S(0)
-                 : (std::max)(p.delta + (cc * down_delta - cd * down_c) / determinant, S(0));
+        at_limit ? S(0) : (std::max)(p.delta + (cc * down_delta - cd * down_c) / determinant, S(0));
     const auto next = problem.project(c_red, delta, p.linear);
     const bool moved = !(square(step) + square((delta - p.delta) / c_red) <= square(tiny));
     if (next.is_physical() && next.cost < p.cost) {

@@ -20,8 +20,7 @@ inline constexpr char gauge_not_tared[] =
     "a constant explains most of the residual: tare the gauge";
 inline constexpr char gauge_rotated[] =
     "the forces are rotated against the displacements: align the gauge with the image";
-inline constexpr char depths_not_in_mm[] =
-    "the depths are too small for a pad: give depths in mm";
+inline constexpr char depths_not_in_mm[] = "the depths are too small for a pad: give depths in mm";
 inline constexpr char colours_unexplained[] =
     "the colours do not follow from the depths: check that both have the same order, place and "
     "frame";

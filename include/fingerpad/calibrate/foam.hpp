@@ -40,7 +40,7 @@ struct [[nodiscard]] TaxelNoise {
   /// pairs: about 0 for noise, 1 for an object that shakes; NaN with fewer than three taxels that
   /// change, or windows of fewer than 8 samples.
   S shared = not_a_number<S>();
-  Index windows = 0;               ///< number of windows used
+  Index windows = 0;  ///< number of windows used
 
   bool ok() const { return cause == nullptr; }
 };

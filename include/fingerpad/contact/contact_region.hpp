@@ -403,8 +403,8 @@ class ContactRegion {
   detail::BorderedImage image_;
   detail::Regions regions_;
   CurvatureMap<S> curvature_;
-  std::array<double, 3> free_ = {};  // plane of the free membrane's curvature: 1, row, column
-  double free_sd_per_mm_ = 0;        // of the curvature about it
+  std::array<double, 3> free_ = {};        // plane of the free membrane's curvature: 1, row, column
+  double free_sd_per_mm_ = 0;              // of the curvature about it
   std::vector<S> statistic_, raw_, mean_;  // curvatures: clamped, plain, smoothed
   detail::ReservedVector<S> samples_{2 * most};
   detail::SharedVector<Ray> rays_;

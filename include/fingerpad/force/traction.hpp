@@ -181,8 +181,8 @@ struct Triangle {
     }
     const Point3<S> half_across = S(0.5) * rubber_pull(across, along, mooney_share);
     pulls[2] = -base_mm * half_across;
-    pulls[1] = shift_mm * half_across -
-               S(0.5) * height_mm * rubber_pull(along, across, mooney_share);
+    pulls[1] =
+        shift_mm * half_across - S(0.5) * height_mm * rubber_pull(along, across, mooney_share);
     pulls[0] = -(pulls[1] + pulls[2]);
     return true;
   }
@@ -384,7 +384,8 @@ class TractionField {
           const auto& y = place_[dots[c]];
           const auto& z = place_[dots[(c + 1) % 4]];
           known = known && is_finite(y) && ears_[cell][c].is_known();
-          sound = known && sound && ears_[cell][c].pull(x, y, z, options_.mooney_share, pulls[c], normal[c]);
+          sound = known && sound &&
+                  ears_[cell][c].pull(x, y, z, options_.mooney_share, pulls[c], normal[c]);
         }
         sound =
             sound && value(dot(normal[0], normal[2])) > 0 && value(dot(normal[1], normal[3])) > 0;

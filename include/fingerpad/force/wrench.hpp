@@ -43,10 +43,9 @@ struct Mark {
 
 struct WrenchOptions {
   StressFreeCap<double> cap = {};
-  double modulus_n_per_mm = 0.5;   ///< mu t: shear modulus times thickness, > 0
-  double modulus_sd_share = 0.01;  ///< what it is known to, in [0, 1]
-  double pressure_sd_share =
-      0.002;                  ///< noise of the gauge, of the pressure, in [0, 1]; 1: no gauge
+  double modulus_n_per_mm = 0.5;     ///< mu t: shear modulus times thickness, > 0
+  double modulus_sd_share = 0.01;    ///< what it is known to, in [0, 1]
+  double pressure_sd_share = 0.002;  ///< noise of the gauge, in [0, 1]; 1: no gauge
   double reach_share = 0.53;  ///< dots are used so far inward, of the base radius, in (0, 0.7]
   bool loose_rim = true;      ///< the rim may be set off along the normal, as a sheet is that bends
   double thickness_mm = 0;    ///< of the membrane, >= 0, for the bend of a loose rim; 0: not known

@@ -229,9 +229,9 @@ class CurvatureMap {
 
   /// Writes the mean of the curvatures in 1/mm, negative ones counted as 0, to `clamped`, which may
   /// be the depth map itself, and returns the number of pixels that got NaN. By the slides, this
-  /// mean is below p / (2 sigma) (pressure p, membrane tension sigma) only in contact; it is 0 where
-  /// the object is convex or flat. Takes a depth map in mm. No number, and nothing written, for
-  /// other sizes.
+  /// mean is below p / (2 sigma) (pressure p, membrane tension sigma) only in contact; it is 0
+  /// where the object is convex or flat. Takes a depth map in mm. No number, and nothing written,
+  /// for other sizes.
   template <grid Depth, class Out>
   [[nodiscard]] std::optional<Index> operator()(const Depth& depth_mm, Out&& clamped) {
     std::nullptr_t no_plain = nullptr;
@@ -369,7 +369,7 @@ class CurvatureMap {
   int least_;  // number of sections that must be complete
   Index row_margin_ = 0, col_margin_ = 0, stride_ = 0;
   detail::RingSections<S> sections_;
-  std::vector<S> cells_;  // zeta, with a margin of NaN on every side
+  std::vector<S> cells_;            // zeta, with a margin of NaN on every side
   std::vector<S> clamped_, plain_;  // of a segment
 };
 

@@ -56,7 +56,8 @@ struct FreeRim {
 
 /// Shoots from the apex. S is the arc from it, rho and r are the radii without and with stress, and
 /// lambda_2 = r / rho; T_1 and T_2 are the tensions of the stretched membrane per mu t. The balance
-/// of the part inside r gives T_1 = q r / (2 sin(phi)) with q = p / (mu t). The profile follows from
+/// of the part inside r gives T_1 = q r / (2 sin(phi)) with q = p / (mu t). The profile follows
+/// from
 ///   r' = lambda_1 cos(phi), z' = -lambda_1 sin(phi), phi' = lambda_1 (q - T_2 sin(phi) / r) / T_1.
 template <scalar S>
 class FreePad {

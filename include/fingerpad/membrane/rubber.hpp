@@ -32,8 +32,7 @@ Point3<S> rubber_pull(const Point3<S>& along, const Point3<S>& other, const S& m
 template <scalar S>
 S rubber_pull(const S& along, const S& other, const S& mooney_share) {
   const S sq = other * other;
-  return (along - S(1) / (along * along * along * sq)) *
-         (S(1) - mooney_share + mooney_share * sq);
+  return (along - S(1) / (along * along * along * sq)) * (S(1) - mooney_share + mooney_share * sq);
 }
 
 namespace detail::membrane {

@@ -65,11 +65,10 @@ void GelReplay::write_row(const GelScene& row) {
   table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
          << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
          << (seen.contact.ok() ? name_of(seen.slide.status) : name_of(seen.contact.status)) << ','
-         << seen.slide.dots << ','
-         << cell_of(seen.slide.slide_px.x) << ',' << cell_of(seen.slide.slide_px.y) << ','
-         << cell_of(seen.slide.slide) << ',' << cell_of(seen.slide.lost) << ','
-         << cell_of(seen.slide.recoil) << ',' << cell_of(seen.slide.evidence) << ','
-         << (seen.slide.alarm ? 1 : 0) << '\n';
+         << seen.slide.dots << ',' << cell_of(seen.slide.slide_px.x) << ','
+         << cell_of(seen.slide.slide_px.y) << ',' << cell_of(seen.slide.slide) << ','
+         << cell_of(seen.slide.lost) << ',' << cell_of(seen.slide.recoil) << ','
+         << cell_of(seen.slide.evidence) << ',' << (seen.slide.alarm ? 1 : 0) << '\n';
 }
 
 void GelReplay::finish() {
@@ -88,7 +87,8 @@ void GelReplay::print_summary() const {
   }
   std::printf("contact      in %d frames\n", touching_);
   if (unlike_ > 0) {
-    std::printf("cannot tell  in %d frames: most of the picture differs from the free pad\n", unlike_);
+    std::printf("cannot tell  in %d frames: most of the picture differs from the free pad\n",
+                unlike_);
   }
   if (slip_) {
     std::printf("slip         first detected in frame %d\n", *slip_);

@@ -35,8 +35,8 @@ class SlideStep {
             double dot_px,
             bool bright_dots = false);
 
-  /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere. A frame that is not
-  /// of this pad keeps the slide of the one before.
+  /// Takes frames in time order; `mask` receives 255 in contact and 0 elsewhere. A frame that is
+  /// not of this pad keeps the slide of the one before.
   GelFrame operator()(const cv::Mat& image, const DotGrid& dots, cv::Mat_<uchar>& mask);
   /// Median time of contact and slide over the frames so far.
   double median_ms() const;
