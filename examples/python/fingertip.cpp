@@ -224,6 +224,9 @@ void bind_result(py::module_& module) {
       .def_readonly("lacks_look_up", &Result::lacks_look_up)
       .def_readonly("lacks_wrench", &Result::lacks_wrench)
       .def_readonly("depth", &Result::depth)
+      .def_readonly("depth_light_sd_mm", &Result::depth_light_sd_mm,
+                    "by how much light that changes may have moved the depth, mm")
+      .def_property_readonly("light_in_doubt", &Result::light_in_doubt)
       .def_property_readonly(
           "neighbour_light", [](const Result& r) { return name_of(r.neighbour_light); },
           "whether the depths suited the removal of neighbouring light")
