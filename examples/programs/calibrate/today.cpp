@@ -135,7 +135,7 @@ int dots_gone(const replay::Sensor& sensor,
   cv::Mat_<int> label;
   cv::Mat_<int> boxes;
   cv::Mat_<double> centers;
-  const cv::Mat dark = (then > 0.1F) & (free_mm > 0);
+  const cv::Mat dark = (then > 0.1) & (free_mm > 0);
   const int count = cv::connectedComponentsWithStats(dark, label, boxes, centers);
   int gone = 0;
   for (int k = 1; k < count; ++k) {
