@@ -682,6 +682,10 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   options.wrench.emplace();
   options.wrench->cap = {18.735, 11};
   options.wrench->modulus_n_per_mm = 0.5;
+  // a force that is too uncertain for a small press tells no less of a contact
+  options.wrench->full_scale_n = GENERATE(0.0, 0.001);
+  const auto expected = options.wrench->full_scale_n > 0 ? fingerpad::WrenchStatus::uncertain
+                                                         : fingerpad::WrenchStatus::ok;
   Fingertip tip(options);
   const Inputs in = frames()[0].view();
   const auto free = free_frame();
@@ -695,14 +699,14 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   CHECK(untouched(test::nan).status == fingerpad::WrenchStatus::no_pressure);
   // whatever the dots show in a free frame, it is no force
   const auto none = untouched(0.016);
-  REQUIRE(none.ok());
+  REQUIRE(none.status == expected);
   CHECK(none.marks >= 20);
   CHECK(std::fabs(none.force_n.z) < 0.02);
   CHECK(std::hypot(none.force_n.x, none.force_n.y) < 0.01);
   // the picture shows a contact, but the dots near the rim feel no press
   const auto unfelt = tip(in.red, in.green, in.dots_px, 0.016);
   CAPTURE(name_of(unfelt.wrench.status), unfelt.wrench.marks, in.pressure_mpa);
-  REQUIRE(unfelt.wrench.ok());
+  REQUIRE(unfelt.wrench.status == expected);
   CHECK(unfelt.contact.in_contact());
   CHECK(unfelt.contact_in_doubt);
 }

@@ -147,7 +147,8 @@ class Fingertip {
   StridedView<const Point2<double>> dot_slips() const {
     return dots_ ? dots_->stick.slips() : StridedView<const Point2<double>>();
   }
-  /// Forgets the object: the next frame is treated as the first.
+  /// Forgets the object: the next frame is treated as its first. The light, and where the dots near
+  /// the rim lie, are of the pad and stay.
   void reset() {
     if (dots_) {
       dots_->reset();
@@ -238,7 +239,7 @@ class Fingertip {
     const Point3<double>& f = touch.wrench.force_n;
     const double parts[] = {f.x, f.y, f.z};
     bool is_felt = false;
-    for (Eigen::Index k = 0; k < 3 && touch.wrench.ok(); ++k) {
+    for (Eigen::Index k = 0; k < 3 && has_sd(touch.wrench); ++k) {
       is_felt = is_felt || square(parts[k]) > 4 * touch.wrench.covariance(k, k);
     }
     if (touch.contact.ok() && !touch.contact.in_contact() && !is_felt) {
@@ -256,13 +257,18 @@ class Fingertip {
     }
   }
 
+  /// Whether a force has a standard deviation that holds, however large.
+  static bool has_sd(const WrenchResult& wrench) {
+    return wrench.ok() || wrench.status == WrenchStatus::uncertain;
+  }
+
   /// An edge that may lie so far off that a quarter of the area is in doubt; or what the rim says,
   /// which has not seen the contact: a press beyond four standard deviations where no region is
   /// found, or an area on which the pressure alone exceeds the press by a quarter. On an object
   /// that is rigid and not hollow, the membrane's tension only adds to the pressure.
   static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
     const ContactResult& contact = touch.contact;
-    const bool is_felt = touch.wrench.ok();
+    const bool is_felt = has_sd(touch.wrench);
     const double press_n = -touch.wrench.force_n.z;
     const double sd_n = std::sqrt(touch.wrench.covariance(2, 2));
     if (!contact.in_contact()) {

@@ -96,7 +96,7 @@ struct [[nodiscard]] FingertipResult {
 
   DotFollowerResult dots;  ///< of the follower; refused without one
   DepthResult depth;
-  /// By how much light may have moved the depth that changed since it was last known, mm.
+  /// Standard deviation of the depth, in mm, from light that may have changed since it was known.
   double depth_light_sd_mm = 0;
   FrameStatus neighbour_light = FrameStatus::ok;  ///< of its removal
   ContactResult contact;
@@ -113,7 +113,7 @@ struct [[nodiscard]] FingertipResult {
   WrenchResult wrench;        ///< six axes from the dots near the rim
 
   bool ok() const { return status == FingertipStatus::ok; }
-  /// Whether the light may err the depth by more than 0.05 mm.
+  /// Whether light may put the depth wrong by more than 0.05 mm.
   bool light_in_doubt() const { return depth_light_sd_mm > 0.05; }
 };
 
