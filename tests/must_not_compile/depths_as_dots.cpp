@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The message names the type that was passed and what its cells must be.
-// message: (ForeignImage<float>.*does not satisfy|planar_point<.*ForeignImage<float>|Dots =
-// test::ForeignImage<float>)
+// message: ForeignImage<float>.*does not satisfy|(planar_point<|Dots =).*ForeignImage<float>
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/foreign_image.hpp"
 
