@@ -4,7 +4,8 @@
 """Writes the report: pages.py BUILD DOCS COMPILER, from the results in BUILD.
 
 Their tables stand between <!-- table: NAME --> and <!-- end --> in docs/results.md,
-docs/speed_and_error.md, docs/papers.md and docs/peers.md; all else on these pages is written by hand. The pictures are beside them.
+docs/speed_and_error.md, docs/papers.md, docs/peers.md and docs/hard_cases.md; all else on these pages is written by
+hand. The pictures are beside them.
 """
 import io
 import json
@@ -196,6 +197,7 @@ def main():
     about = machine(sys.argv[3])
     write_methods(build, docs, about)
     write_chain(build, docs, about)
+    replace_table(docs / "hard_cases.md", "hard_cases", (build / "hard_cases.md").read_text("utf-8"))
     for name in ("papers", "peers"):
         replace_table(docs / f"{name}.md", name, (build / f"{name}.md").read_text("utf-8"))
     plots.peers((build / "peers.md").read_text("utf-8"), docs / "peers.png")
