@@ -151,27 +151,6 @@ struct FreePadByPitch {
   }
 };
 
-/// Thresholds that separate marked onsets. They come from a list, so none has a derivative.
-struct PreslipThresholds {
-  template <class S>
-  Results<S> operator()(const S& p) const {
-    std::vector<MarkedSample<S>> samples;
-    for (int t = 0; t < 200; ++t) {
-      const bool onset = t % 40 >= 30;
-      FingerSample<S> sample;
-      sample.status = TaxelStatus::vibrating;
-      sample.center_x_mm = sample.center_y_mm = S(0);
-      sample.sum = S(100) * p;
-      sample.add_vibration(0, onset ? 3 : 0);
-      sample.frequency_hz = S(onset ? 40 : 0);
-      samples.push_back({{sample}, onset});
-    }
-    const auto fit = fit_preslip<S>(samples, {.history = 10});
-    return {S(static_cast<int>(fit.found)), S(static_cast<int>(fit.alarms)),
-            S(fit.options.centroid_tolerance_mm)};
-  }
-};
-
 /// Largest relative difference of two lists.
 template <class A, class B>
 double furthest(const Results<A>& a, const Results<B>& b) {
@@ -212,7 +191,6 @@ TEST_CASE("calibrations: in float, and with derivatives") {
   check("noise of dots", DotNoiseByScale(), 1e-3);
   check("noise of taxels", TaxelsByGain(), 1e-3);
   check("free pad", FreePadByPitch(), 2e-2);
-  check("pre-slip", PreslipThresholds(), 1e-6, false);
 }
 
 TEST_CASE("a look-up's covariance is that which the forces' errors carry into its parameters",

@@ -11,16 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "bench/trials/grip/foam_fingers.hpp"
 #include "fingerpad/adapt/dual.hpp"
-#include "fingerpad/pipeline/foam_hand.hpp"
 #include "support/catch.hpp"
-#include "support/foam_signals.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
 using namespace fingerpad;
-using test::finger;
 using test::Random;
 using test::refusal;
 
@@ -529,146 +525,4 @@ TEST_CASE("taxel noise: a centroid that cannot move has no deviation, also in de
   CHECK(noise.typical.slopes[0] == Approx(noise.typical.value).epsilon(1e-9));
   CHECK(noise.centroid_deviation_mm.value == 0);
   CHECK(noise.centroid_deviation_mm.slopes[0] == 0);
-}
-
-namespace {
-
-/// A trembling hand. Between slips the force moves by 0.3 mm and a taxel vibrates with two waves
-/// now and then; at the onset of slip the force moves by 1.5 mm and a taxel vibrates with `waves`.
-using Marked = std::vector<MarkedSample<>>;
-
-void add_trembling(Marked& samples, unsigned seed, Index waves, Index late = 0) {
-  Random random(seed);
-  for (Index k = 0; k < 400; ++k) {
-    const auto is_onset = [](Index at) { return at % 50 >= 44; };
-    const bool slips = is_onset(k);
-    const double x = 20 + random.uniform(-0.15, 0.15) + (slips ? 1.5 : 0);
-    const Index now = slips ? waves : (k % 7 == 0 ? Index(2) : Index(0));
-    const auto one = finger(x, k % 11, now);
-    samples.push_back({{one, finger(20, 0, 0)}, k >= late && is_onset(k - late), k == 0});
-  }
-}
-
-}  // namespace
-
-TEST_CASE("pre-slip calibration: thresholds between what trembles and what slips", "[preslip]") {
-  Marked samples;
-  add_trembling(samples, 1, 3);
-  add_trembling(samples, 2, 3);
-  const auto fit = fit_preslip(samples, {.history = 20});
-  CAPTURE(fit.options.centroid_tolerance_mm, fit.options.min_waves, fit.precision(), fit.recall());
-  CHECK(fit.ok());
-  CHECK(fit.onsets == 16);
-  CHECK(fit.found == 16);
-  CHECK(fit.samples == 800);
-  CHECK(fit.marked == 96);
-  CHECK(fit.chance() == Approx(0.12));
-  CHECK(fit.precision() == 1);
-  CHECK(fit.options.history == 20);
-  // either threshold separates them
-  CHECK((fit.options.min_waves == 3 || fit.options.centroid_tolerance_mm >= 0.3));
-
-  // with equal waves, the centroid alone separates them
-  Marked alike;
-  add_trembling(alike, 3, 2);
-  const auto by_centroid = fit_preslip(alike, {.history = 20});
-  CHECK(by_centroid.ok());
-  CHECK(by_centroid.recall() == 1);
-  CHECK(by_centroid.options.centroid_tolerance_mm >= 0.3);
-  CHECK(by_centroid.options.centroid_tolerance_mm < 1.5);
-  CHECK(judge_preslip(alike, {.history = 20}).precision() < 0.6);  // the default of 0.1 mm
-}
-
-TEST_CASE("pre-slip calibration: round tolerances separate what moves little less or more",
-          "[preslip]") {
-  for (const double tolerance : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0}) {
-    Marked samples;
-    for (Index k = 0; k < 400; ++k) {
-      const bool slips = k % 50 == 44;
-      const double moved = k % 50 == 20 ? 0.98 * tolerance : (slips ? 1.02 * tolerance : 0);
-      samples.push_back({{finger(20 + moved, k % 11, moved > 0 ? 2 : 0), finger(20, 0, 0)}, slips});
-    }
-    const auto fit = fit_preslip(samples, {.history = 20});
-    CAPTURE(tolerance, fit.precision(), fit.recall());
-    CHECK(fit.ok());
-    CHECK(fit.options.centroid_tolerance_mm == tolerance);
-  }
-}
-
-TEST_CASE("pre-slip calibration: marks that do not fit are told", "[preslip]") {
-  Marked samples;
-  add_trembling(samples, 1, 3, 25);
-  const auto fit = fit_preslip(samples, {.history = 20});
-  CHECK(test::begins_with(text_of(fit), "no threshold separates"));
-  CHECK(fit.precision() < 0.5);
-
-  const Marked unmarked = {{{finger(1, 1, 2), finger(1, 1, 2)}, false}};
-  const Marked all = {{{finger(1, 1, 2), finger(1, 1, 2)}, true}};
-  CHECK(refusal([&] { (void)fit_preslip(unmarked); }) ==
-        "fit_preslip: marked samples = 0, must be >= 1");
-  CHECK(refusal([&] { (void)fit_preslip(all); }) ==
-        "fit_preslip: samples without a mark = 0, must be >= 1");
-  CHECK(test::begins_with(refusal([&] { (void)fit_preslip(samples, {}, 1.5); }),
-                          "fit_preslip: min_precision = 1.5"));
-  CHECK(test::begins_with(refusal([&] { (void)fit_preslip(samples, {.history = 1}); }),
-                          "PreslipOptions: history = 1"));
-  CHECK(test::begins_with(refusal([] { (void)judge_preslip({}); }), "Preslip: fingers = 0"));
-}
-
-TEST_CASE("pre-slip calibration: nothing is compared across recordings", "[preslip]") {
-  // one sample per recording: a pair would need two
-  Marked samples;
-  for (int k = 0; k < 20; ++k) {
-    samples.push_back({{finger(k, k, 1 + k), finger(k, k, 1 + k)}, k % 2 == 1, true});
-  }
-  const auto fit = fit_preslip(samples);
-  CHECK(fit.alarms == 0);
-  CHECK(test::begins_with(text_of(fit), "no threshold separates"));
-}
-
-namespace {
-
-/// Loosens simulated fingers until the object falls, with three times the default noise. An onset
-/// is a slip less than a window ago.
-void add_loosening(Marked& samples, unsigned seed) {
-  grip::FoamFingersSetup object;
-  object.friction.factor = 0.25 + 0.05 * (seed % 4);
-  object.weight_n = 2.5 + 0.7 * (seed % 3);
-  grip::FoamFingers hand(object, seed);
-  const TaxelFeatures<> finger(object.rows, object.cols,
-                               {.pitch_mm = object.pitch_mm,
-                                .sample_period_s = 1 / object.rate_hz,
-                                .noise = object.noise_counts});
-  FoamHand<> foam({finger, finger});
-  Index since_slip = 1000;
-  for (int k = 0; !hand.has_slipped() && k < 4000; ++k) {
-    hand.advance(object.first_force_n - 0.2 * (k / 40));
-    (void)foam(std::array{hand.readings(0), hand.readings(1)}, hand.time_s());
-    since_slip = hand.slipped_mm(0) > 0 || hand.slipped_mm(1) > 0 ? 0 : since_slip + 1;
-    const auto fingers = foam.fingers();
-    samples.push_back(
-        {{fingers.begin(), fingers.end()}, since_slip < finger.options().window, k == 0});
-  }
-}
-
-}  // namespace
-
-TEST_CASE("pre-slip calibration: thresholds of some objects hold for others", "[preslip]") {
-  Marked lift;
-  for (unsigned seed = 0; seed < 3; ++seed) {
-    add_loosening(lift, seed);
-  }
-  const auto fit = fit_preslip(lift, {}, 0.95);
-  CHECK(fit.ok());
-  CHECK(fit.precision() >= 0.95);
-  CHECK(fit.recall() >= 0.9);
-  // on objects outside the calibration
-  for (unsigned seed = 7; seed < 10; ++seed) {
-    Marked unseen;
-    add_loosening(unseen, seed);
-    CAPTURE(seed);
-    const auto judged = judge_preslip(unseen, fit.options);
-    CHECK(judged.precision() >= 0.9);
-    CHECK(judged.recall() >= 0.9);
-  }
 }

@@ -12,12 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "support/catch.hpp"
-#include "support/foam_signals.hpp"
 #include "support/mistakes.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -172,51 +170,6 @@ void all_of(std::vector<Pixels>& images, const std::function<Pixels(const Pixels
   }
 }
 
-// ---- pre-slip
-
-/// A trembling hand that slips now and then: samples of two fingers, and whether slip begins.
-struct Hand {
-  static constexpr int samples = 400;
-  std::vector<std::array<FingerSample<>, 2>> fingers;
-  std::vector<bool> marks;
-
-  Hand() {
-    Random random(2);
-    for (int k = 0; k < samples; ++k) {
-      const bool slips = k % 50 >= 44;
-      const double x = 20 + random.uniform(-0.15, 0.15) + (slips ? 1.5 : 0);
-      fingers.push_back({test::finger(x, k % 11,
-                                      slips        ? 3
-                                      : k % 7 == 0 ? 2
-                                                   : 0),
-                         test::finger(20, 0, 0)});
-      marks.push_back(slips);
-    }
-  }
-};
-
-std::string said_of_preslip(const Hand& hand) {
-  std::vector<MarkedSample<>> samples;
-  for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
-    samples.push_back({{hand.fingers[k].begin(), hand.fingers[k].end()}, hand.marks[k]});
-  }
-  const auto fit = fit_preslip(samples, {.history = 20});
-  return !fit.ok() ? text_of(fit)
-         : fit.recall() == 1 && fit.precision() == 1
-             ? "right"
-             : "recall " + std::to_string(fit.recall()).substr(0, 3);
-}
-
-using Fingers = std::array<FingerSample<>, 2>;
-
-std::function<void(Hand&)> each_sample(const std::function<void(Fingers&, std::size_t)>& change) {
-  return [=](Hand& hand) {
-    for (std::size_t k = 0; k < hand.fingers.size(); ++k) {
-      change(hand.fingers[k], k);
-    }
-  };
-}
-
 }  // namespace
 
 TEST_CASE("mistakes: the light of one channel", "[mistakes]") {
@@ -325,66 +278,4 @@ TEST_CASE("mistakes: neighbouring light", "[mistakes]") {
       {"no truth", [=](Depths& d) { all_of(d.truth, scaled(test::nan)); }, "true depth = 0"},
   };
   check(mistakes, said_of_neighbours);
-}
-
-TEST_CASE("mistakes: thresholds of pre-slip", "[mistakes]") {
-  const Mistake<Hand> mistakes[] = {
-      {"none", [](Hand&) {}, "right"},
-      {"centers in m", each_sample([](auto& f, std::size_t) {
-         f[0].center_x_mm /= 1000, f[1].center_x_mm /= 1000;
-       }),
-       "right"},
-      {"centers in um", each_sample([](auto& f, std::size_t) {
-         f[0].center_x_mm *= 1000, f[1].center_x_mm *= 1000;
-       }),
-       "right"},
-      {"x and y exchanged",
-       each_sample([](auto& f, std::size_t) { std::swap(f[0].center_x_mm, f[0].center_y_mm); }),
-       "right"},
-      {"fingers exchanged", each_sample([](auto& f, std::size_t) { std::swap(f[0], f[1]); }),
-       "right"},
-      {"fingers exchanged every second", each_sample([](auto& f, std::size_t k) {
-         if (k % 2) {
-           std::swap(f[0], f[1]);
-         }
-       }),
-       "right"},
-      {"a dead finger", each_sample([](auto& f, std::size_t) { f[0] = f[1]; }),
-       "no threshold separates the onsets"},
-      {"two dead fingers", each_sample([](auto& f, std::size_t) {
-         f[0].status = TaxelStatus::frozen;
-         f[1].status = TaxelStatus::frozen;
-       }),
-       "no threshold separates the onsets"},
-      {"marks late by half a period",
-       [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 25, h.marks.end()); },
-       "no threshold separates the onsets"},
-      {"marks one late",
-       [](Hand& h) { std::rotate(h.marks.begin(), h.marks.end() - 1, h.marks.end()); },
-       "no threshold separates the onsets"},
-      {"marks reversed", [](Hand& h) { h.marks.flip(); }, "no threshold separates the onsets"},
-      {"marks in other order", [](Hand& h) { std::reverse(h.marks.begin(), h.marks.end()); },
-       "no threshold separates the onsets"},
-      {"all marked", [](Hand& h) { h.marks.assign(h.marks.size(), true); },
-       "samples without a mark = 0"},
-      {"none marked", [](Hand& h) { h.marks.assign(h.marks.size(), false); }, "marked samples = 0"},
-      {"half of the marks forgotten",
-       [](Hand& h) { std::fill(h.marks.begin(), h.marks.begin() + 200, false); },
-       "no threshold separates the onsets"},
-      {"half of the samples missing", each_sample([](auto& f, std::size_t k) {
-         if (k < 200) {
-           f = {};
-         }
-       }),
-       "recall 0.5"},
-      {"marks by chance",
-       [](Hand& h) {
-         Random r(5);
-         for (std::size_t k = 0; k < h.marks.size(); ++k) {
-           h.marks[k] = r.uniform() < 0.12;
-         }
-       },
-       "no threshold separates the onsets"},
-  };
-  check(mistakes, said_of_preslip);
 }

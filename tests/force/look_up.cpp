@@ -67,12 +67,6 @@ ShearMap<> ones(double reference = 1, double of_displacement = 0, double of_rota
 ShearMap<> ends() {
   return {1, {2, 0, 1.5}, {30, 0, 0.5}};
 }
-ShearMap<> slanted() {
-  ShearMap<> map = test::straight_map<double>(1, 0, 0, 1, 40);
-  map.x_by_x = 2, map.x_by_y = -0.5, map.y_by_x = 0.25, map.y_by_y = 3;
-  map.offset_n = {0.125, -0.25};
-  return map;
-}
 
 }  // namespace
 
@@ -728,33 +722,6 @@ TEST_CASE("shear: a straight line needs no range, but reports the one it has", "
   }
 }
 
-TEST_CASE("shear: any linear map", "[shear]") {
-  const Shear shear(slanted());
-  auto r = shear(1.0, {1, 2}, 0.25);
-  CHECK(r.tangential_force_n.x == 2 - 1 + 0.125);
-  CHECK(r.tangential_force_n.y == 0.25 + 6 - 0.25);
-  CHECK(r.moment_n_mm == 10);
-  // offsets are the force of a contact that is not displaced, not of a missing contact
-  r = shear(1.0, {0, 0}, 0);
-  CHECK(r.tangential_force_n.x == 0.125);
-  CHECK(r.tangential_force_n.y == -0.25);
-  r = shear(0.0, {1, 2}, 0.25);
-  CHECK(r.tangential_force_n.x == 0);
-  CHECK(r.tangential_force_n.y == 0);
-  CHECK(r.moment_n_mm == 0);
-  // normalised
-  ShearMap<> map = slanted();
-  map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
-  r = Shear(map)(200.0, {1, 2}, 0.25);
-  CHECK(r.tangential_force_n.x == Approx(1.56916819579350147 + 0.125).epsilon(1e-14));
-  CHECK(r.tangential_force_n.y == Approx(6.25 * 1.56916819579350147 - 0.25).epsilon(1e-14));
-  CHECK(r.moment_n_mm == Approx(10 * 3.24900958542494209).epsilon(1e-14));
-  // no displacement of a fingertip is beyond the range of this map
-  CHECK(shear(1.0, {60, 80}, -3.1).ok());  // 100 mm
-  CHECK(shear(1.0, {101, 0}, 0.1).status == ForceStatus::implausible);
-  CHECK(shear(1.0, {1, 0}, -15).status == ForceStatus::implausible);
-}
-
 TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {
   ShearMap<> map = ends();
   map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
@@ -810,19 +777,9 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
   };
   CHECK(refused(ones()) == "accepted");
   CHECK(refused(ends()) == "accepted");
-  CHECK(refused(slanted()) == "accepted");
   CHECK(refused(ShearMap<>()) == "ShearMap: force: slope = nan, must be finite and >= 0");
   for (const double bad : {0.0, -100.0, infinity, missing}) {
     CHECK(begins_with(with(ones(), [&](auto& m) { m.reference = bad; }), "ShearMap: reference = "));
-  }
-  for (const double bad : {infinity, -infinity, missing}) {
-    for (double ShearMap<>::*const field :
-         {&ShearMap<>::x_by_x, &ShearMap<>::x_by_y, &ShearMap<>::y_by_x, &ShearMap<>::y_by_y}) {
-      CHECK(begins_with(with(slanted(), [&](auto& m) { m.*field = bad; }), "ShearMap: "));
-      CHECK(with(slanted(), [&](auto& m) { m.*field = -3; }) == "accepted");
-    }
-    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.x = bad; }), "ShearMap: K or"));
-    CHECK(begins_with(with(slanted(), [&](auto& m) { m.offset_n.y = bad; }), "ShearMap: K or"));
   }
   for (ShearLaw<> ShearMap<>::*const law : {&ShearMap<>::force, &ShearMap<>::moment}) {
     const std::string owner =
@@ -867,13 +824,6 @@ ShearMap<S> normalised(ShearMap<S> map) {
   map.reference = static_cast<S>(test::log_uniform(1, 1000));
   map.force.exponent = static_cast<S>(test::uniform(0.2, 2));
   map.moment.exponent = static_cast<S>(test::uniform(0.2, 3));
-  return map;
-}
-ShearMap<> any_linear() {
-  ShearMap<> map = ones();
-  for (double* k : {&map.x_by_x, &map.x_by_y, &map.y_by_x, &map.y_by_y}) {
-    *k = test::uniform(-10, 10);
-  }
   return map;
 }
 double any_measure() {
@@ -974,8 +924,8 @@ TEST_CASE("shear: straight lines", "[shear][law]") {
 }
 
 TEST_CASE("shear: linear maps", "[shear][law]") {
-  rc::prop("forces of two shifts add, of any linear map; offsets add to it", [] {
-    ShearMap<> map = normalised(any_linear());
+  rc::prop("forces of two shifts add", [] {
+    const ShearMap<> map = normalised(ones());
     const Shear shear(map);
     const double measure = any_measure(), s = test::uniform(-5, 5);
     const double theta = any_rotation(), eta = any_rotation();
@@ -983,16 +933,12 @@ TEST_CASE("shear: linear maps", "[shear][law]") {
     const auto a = shear(measure, d, theta), b = shear(measure, e, eta);
     const auto both = shear(measure, {d.x + s * e.x, d.y + s * e.y}, theta + s * eta);
     const double factor = std::pow(measure / map.reference, map.force.exponent);
-    const double scale = 20 * factor * (length(d) + std::abs(s) * length(e));
+    const double scale = 2 * factor * (length(d) + std::abs(s) * length(e));
     const auto &fa = a.tangential_force_n, &fb = b.tangential_force_n;
     RC_ASSERT(near(both.tangential_force_n.x, fa.x + s * fb.x, scale, 10));
     RC_ASSERT(near(both.tangential_force_n.y, fa.y + s * fb.y, scale, 10));
     RC_ASSERT(near(both.moment_n_mm, a.moment_n_mm + s * b.moment_n_mm,
                    std::abs(a.moment_n_mm) + std::abs(s * b.moment_n_mm), 10));
-    map.offset_n = {test::uniform(-3, 3), test::uniform(-3, 3)};
-    const auto with = Shear(map)(measure, d, theta);
-    RC_ASSERT(with.tangential_force_n.x == fa.x + map.offset_n.x);
-    RC_ASSERT(with.tangential_force_n.y == fa.y + map.offset_n.y);
   });
 }
 

@@ -54,8 +54,6 @@ void try_shear(Input& in) {
   map.reference = in.number(1, 200);
   map.force = {in.number(0, 3), in.number(0, 2), 1};
   map.moment = {in.number(0, 60), in.number(0, 3), 1};
-  map.x_by_y = in.number(-1, 1);
-  map.y_by_x = in.number(-1, 1);
   const Shear shear(map);
   for (int frame = 0; frame < 8; ++frame) {
     const double measure = in.number(-10, 500), turned = in.number(-1, 1);

@@ -62,10 +62,9 @@ inline const auto draw_samples = [](const auto& data, Chance& chance) {
   return chance.drawn_from(data);
 };
 
-/// Trials defined in trials_of_shape.cpp and trials_of_preslip.cpp.
+/// Trials defined in trials_of_shape.cpp.
 Trial camera_plate();
 Trial cap();
 Trial intensity();
-Trial preslip();
 
 }  // namespace trials

@@ -316,7 +316,6 @@ const std::map<std::string, Trial (*)()>& makers() {
                                                          {"camera_plate", camera_plate},
                                                          {"cap", cap},
                                                          {"intensity", intensity},
-                                                         {"preslip", preslip},
                                                          {"rim", rim},
                                                          {"normal_force", normal_force},
                                                          {"tangential_force", tangential_force},

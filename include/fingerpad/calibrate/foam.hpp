@@ -1,23 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Noise of the taxels of a foam array, and thresholds of the pre-slip rules, from recordings. The
-// paper ("Pre-Slip Sensing Using Tactile Sensor", 2007) gives neither.
+// Noise of the taxels of a foam array, from a recording. The paper ("Pre-Slip Sensing Using Tactile
+// Sensor", 2007) does not give it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <numbers>
-#include <span>
-#include <type_traits>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/foam/preslip.hpp"
 #include "fingerpad/foam/taxels.hpp"
 
 namespace fingerpad {
@@ -226,113 +222,6 @@ class TaxelNoiseCalibration {
   Index in_window_ = 0;                    // samples of the present window
   Index windows_ = 0;
 };
-
-/// Comparison of a rule's alarms with marked onsets of slip. A rule is judged by both its recall
-/// and its precision: a rule that always alarms finds every onset.
-struct [[nodiscard]] PreslipFit {
-  static constexpr char onsets_not_found[] =
-      "no threshold separates the onsets from the rest: check the marks, or use another rule";
-
-  const char* cause = nullptr;  ///< likely mistake
-  PreslipOptions options = {};  ///< for Preslip
-  Index onsets = 0;             ///< marked samples in a row count as one
-  Index found = 0;              ///< onsets with an alarm
-  Index alarms = 0;             ///< samples with an alarm
-  Index right = 0;              ///< alarms in marked samples
-  Index samples = 0;
-  Index marked = 0;
-
-  bool ok() const { return cause == nullptr; }
-  double recall() const { return share(found, onsets); }
-  double precision() const { return share(right, alarms); }
-  /// The precision of a rule that always alarms. A useful rule has a higher `precision`.
-  double chance() const { return share(marked, samples); }
-
- private:
-  static double share(Index part, Index whole) {
-    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
-  }
-};
-
-/// A sample of all fingers in which a person, or a camera, has marked the onset of slip. Mark the
-/// samples in which an alarm would be right: about a window of samples from the first that slips.
-template <scalar S = double>
-struct MarkedSample {
-  std::vector<FingerSample<S>> fingers;
-  bool is_onset = false;
-  bool begins = false;  ///< another recording: it is not compared with earlier samples
-};
-
-/// Judges given thresholds, for example from other recordings; gives no cause. Refuses bad options
-/// and samples without fingers (parameter_error). O(samples history).
-template <scalar S = double>
-PreslipFit judge_preslip(std::type_identity_t<std::span<const MarkedSample<S>>> samples,
-                         const PreslipOptions& options = {}) {
-  const std::size_t fingers = samples.empty() ? 0 : samples.front().fingers.size();
-  Preslip<S> rule(static_cast<Index>(fingers), options);
-  PreslipFit score;
-  score.options = options;
-  bool in_onset = false, is_found = false;
-  for (const MarkedSample<S>& s : samples) {
-    if (s.begins) {
-      rule.reset();
-      in_onset = false;
-    }
-    const bool alarms = rule(s.fingers) == PreslipStatus::preslip;
-    const bool is_new = s.is_onset && !in_onset, is_right = alarms && s.is_onset;
-    in_onset = s.is_onset;
-    is_found = is_found && !is_new;
-    ++score.samples;
-    score.marked += s.is_onset ? 1 : 0;
-    score.onsets += is_new ? 1 : 0;
-    score.alarms += alarms ? 1 : 0;
-    score.right += is_right ? 1 : 0;
-    score.found += is_right && !is_found ? 1 : 0;
-    is_found = is_found || is_right;
-  }
-  return score;
-}
-
-/// The thresholds, for the rule and history of `options`, that find the most onsets with a
-/// precision of at least `min_precision`; of equally good ones, the middle. Not ok() if there are
-/// none, or if the alarms are no better than chance. Refuses (parameter_error) what judge_preslip
-/// refuses, samples of which none, or all, are marked, and a `min_precision` outside [0, 1]. Takes
-/// O(samples history) time, 96 times.
-template <scalar S = double>
-PreslipFit fit_preslip(std::type_identity_t<std::span<const MarkedSample<S>>> samples,
-                       PreslipOptions options = {},
-                       double min_precision = 0.9) {
-  const auto marked = std::count_if(samples.begin(), samples.end(),
-                                    [](const MarkedSample<S>& s) { return s.is_onset; });
-  const auto others = static_cast<Index>(samples.size()) - marked;
-  require("fit_preslip", {{"min_precision", min_precision, within(0, 1)},
-                          {"marked samples", marked, at_least(1)},
-                          {"samples without a mark", others, at_least(1)}});
-  const auto is_better = [&](const PreslipFit& a, const PreslipFit& b) {
-    const bool a_holds = a.precision() >= min_precision, b_holds = b.precision() >= min_precision;
-    return a_holds != b_holds   ? a_holds
-           : a.found != b.found ? a.found > b.found
-                                : a.precision() > b.precision();
-  };
-  std::vector<PreslipFit> best;  // equally good ones, with the same min_waves
-  for (options.min_waves = 0; options.min_waves < 8; ++options.min_waves) {
-    for (const double tolerance_mm : {0., 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1., 2., 3., 5., 10.}) {
-      options.centroid_tolerance_mm = tolerance_mm;
-      const PreslipFit next = judge_preslip<S>(samples, options);
-      if (best.empty() || is_better(next, best.front())) {
-        best.assign(1, next);
-      } else if (!is_better(best.front(), next) &&
-                 best.front().options.min_waves == options.min_waves) {
-        best.push_back(next);
-      }
-    }
-  }
-  PreslipFit fit = best[best.size() / 2];
-  fit.cause = fit.precision() >= min_precision && fit.found > 0 && fit.precision() > fit.chance()
-                  ? nullptr
-                  : PreslipFit::onsets_not_found;
-  return fit;
-}
 
 }  // namespace v1
 }  // namespace fingerpad

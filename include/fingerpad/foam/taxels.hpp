@@ -32,7 +32,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/foam/finger_sample.hpp"
+#include "fingerpad/foam/preslip.hpp"
 
 namespace fingerpad {
 inline namespace v1 {

@@ -228,21 +228,14 @@ struct ShearLaw {
   S to = not_a_number<S>();     ///< the largest |x| identified, > 0; NaN: not known
 };
 
-/// Force and moment from displacement and rotation, F = slope K d_nor + offset. With K = 1
-/// the force is along the displacement; other K are for sensors that are not round, or whose axes
-/// are not those of the image. Elastic pads, by the radius of the contact: the exponents are 1 and
-/// 3, because the tangential stiffness of a round contact is proportional to its radius, the
-/// torsional one to its cube (Johnson, Contact Mechanics).
+/// Force and moment from displacement and rotation. Elastic pads, by the radius of the contact: the
+/// exponents are 1 and 3, because the tangential stiffness of a round contact is proportional to
+/// its radius, the torsional one to its cube (Johnson, Contact Mechanics).
 template <scalar S = double>
 struct ShearMap {
   S reference = S(1);  ///< in the measure's unit, finite, > 0
   ShearLaw<S> force;   ///< N/mm
   ShearLaw<S> moment;  ///< N mm/rad
-  S x_by_x = S(1);     ///< K, finite
-  S x_by_y = S(0);
-  S y_by_x = S(0);
-  S y_by_y = S(1);
-  Point2<S> offset_n = {S(0), S(0)};  ///< finite
 };
 
 /// Says which parameter has no meaning.
@@ -250,9 +243,6 @@ template <scalar S>
 std::string check(const ShearMap<S>& m) {
   const char* const owner = "ShearMap";
   std::string refusal = check(owner, {{"reference", m.reference, positive}});
-  for (const S& k : {m.x_by_x, m.x_by_y, m.y_by_x, m.y_by_y, m.offset_n.x, m.offset_n.y}) {
-    refusal = refusal.empty() ? check(owner, {{"K or offset_n", k, finite_number}}) : refusal;
-  }
   for (const ShearLaw<S>* law : {&m.force, &m.moment}) {
     const char* const whose = law == &m.force ? "ShearMap: force" : "ShearMap: moment";
     const bool has_end = value(law->to) == value(law->to);
@@ -307,9 +297,7 @@ class Shear {
     }
     const S log_ratio = log(measure / map_.reference);  // once for both powers
     const Point2<S> d = exp(map_.force.exponent * log_ratio) * displacement_mm;
-    const Point2<S> pull = map_.force.slope * d;
-    const Point2<S> force = {map_.x_by_x * pull.x + map_.x_by_y * pull.y + map_.offset_n.x,
-                             map_.y_by_x * pull.x + map_.y_by_y * pull.y + map_.offset_n.y};
+    const Point2<S> force = map_.force.slope * d;
     const S theta = exp(map_.moment.exponent * log_ratio) * rotation_rad;
     const S moment = map_.moment.slope * theta;
     if (is_finite(force)) {
