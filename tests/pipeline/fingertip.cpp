@@ -713,32 +713,57 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
 
 namespace {
 
-/// Printed dots of a finite-element membrane before a fingertip's six axes, with noise of 0.06 px.
+/// Dots of a finite-element membrane before a fingertip's six axes, with noise of 0.06 px, beside a
+/// printed lattice that only the free pad shows. The camera's axis is taken to lie `beside_px`
+/// beside the pad's.
 class FreeThenPressed {
  public:
-  explicit FreeThenPressed(const char* name)
+  explicit FreeThenPressed(const char* name, double beside_px = 0)
       : scene_(*std::find_if(test::rim_scenes().begin(),
                              test::rim_scenes().end(),
                              [&](const auto& one) { return one.name == name; })),
-        touching_(scene_.frames.front().dots_mm.size(), 0),
-        wrench(scene_.camera(), options()) {}
+        lattice_mm_(size * size),
+        touching_(lattice_mm_.size(), 0),
+        wrench(options(beside_px)) {
+    const fingerpad::FreePad<double> pad(scene_.cap);
+    const auto meridian = pad.meridian(free_mpa() / scene_.modulus_n_per_mm);
+    for (std::size_t k = 0; k < lattice_mm_.size(); ++k) {
+      const double half = size / 2;
+      const double x = static_cast<double>(k % size) / half - 1;
+      const double y = static_cast<double>(k / size) / half - 1;
+      const double r = std::hypot(x, y);
+      const auto at = static_cast<std::size_t>(r * static_cast<double>(meridian.size()));
+      lattice_mm_[k] = r > 0.95 || r == 0
+                           ? fingerpad::Point3<double>{test::nan, test::nan, test::nan}
+                           : fingerpad::Point3<double>{meridian[at].x * x / r,
+                                                       meridian[at].x * y / r, meridian[at].y};
+    }
+  }
 
   double free_mpa() const { return scene_.frames.front().pressure_mpa; }
-  double press_n() const { return scene_.frames[1].load[2]; }
+  const std::array<double, 6>& load() const { return scene_.frames[1].load; }
+  double press_n() const { return load()[2]; }
 
   /// Part `share` of the way from the free pad to its first press, all dots moved by `shift_px`.
   fingerpad::WrenchResult show(double share, double shift_px, bool finds_contact) {
     const auto &free = scene_.frames.front(), &pressed = scene_.frames[1];
-    std::vector<fingerpad::Point2<double>> px;
-    for (std::size_t k = 0; k < touching_.size(); ++k) {
+    const auto seen = [&](const fingerpad::Point3<double>& at, double by_px) {
+      const auto px = pixel_of(scene_.camera(), at);
+      return fingerpad::Point2<double>{px.x + by_px + 0.06 * random_.normal(),
+                                       px.y + 0.06 * random_.normal()};
+    };
+    std::vector<fingerpad::Mark> marks;
+    for (std::size_t k = 0; k < free.dots_mm.size(); ++k) {
       const auto at = free.dots_mm[k] + share * (pressed.dots_mm[k] - free.dots_mm[k]);
-      const auto seen = pixel_of(scene_.camera(), at);
-      const double shift = shift_px + (k == 0 ? stray_px : 0);
-      px.push_back({seen.x + shift + 0.06 * random_.normal(), seen.y + 0.06 * random_.normal()});
+      marks.push_back({.px = seen(at, shift_px + (k == 0 ? stray_px : 0)), .sd_px = 0.06});
     }
-    const auto rows = static_cast<fingerpad::Index>(px.size());
-    const fingerpad::StridedView<const fingerpad::Point2<double>> dots(px.data(), rows, 1, 1);
-    wrench.read(dots, {touching_.data(), rows, 1, 1}, {}, {}, 1);
+    std::vector<fingerpad::Point2<double>> lattice(touching_.size(), {test::nan, test::nan});
+    for (std::size_t k = 0; k < lattice.size() && share == 0; ++k) {
+      lattice[k] = seen(lattice_mm_[k], shift_px);
+    }
+    const fingerpad::StridedView<const fingerpad::Point2<double>> dots(lattice.data(), size, size,
+                                                                       size);
+    wrench.read(dots, {touching_.data(), size, size, size}, marks, {}, 1);
     const double mpa = free.pressure_mpa + share * (pressed.pressure_mpa - free.pressure_mpa);
     auto result = wrench(mpa);
     if (!finds_contact) {
@@ -748,26 +773,54 @@ class FreeThenPressed {
   }
 
  private:
-  FingertipOptions options() {
+  FingertipOptions options(double beside_px) {
     FingertipOptions o = frames().options();
-    cells_.resize(touching_.size());
-    o.free_dots_mm = {cells_.data(), static_cast<fingerpad::Index>(cells_.size()), 1, 1};
+    o.camera = scene_.camera();
+    o.camera.center_x_px += beside_px;
+    o.free_dots_mm = {lattice_mm_.data(), size, size, size};
+    o.side_dots = static_cast<fingerpad::Index>(scene_.frames.front().dots_mm.size());
     o.wrench = test::SeenRim::options_of(scene_, true);
     o.wrench->pressure_sd_share = 0.002;
     return o;
   }
 
+  static constexpr fingerpad::Index size = 21;
   const test::RimScene& scene_;
+  std::vector<fingerpad::Point3<double>> lattice_mm_;
   std::vector<std::uint8_t> touching_;
-  std::vector<fingerpad::Point3<double>> cells_;
   test::Random random_{7};
 
  public:
-  double stray_px = 0;  // of the first dot
+  static constexpr std::size_t first_dot = size * size;  // of the finite elements
+  double stray_px = 0;                                   // of that dot
   fingerpad::detail::FingertipWrench wrench;
 };
 
 }  // namespace
+
+TEST_CASE("an axis beside the camera's is seen in the free printed grid", "[chain]") {
+  for (const char* name : {"bowl", "drag", "small_pad"}) {
+    for (const double beside_px : {0.0, 0.5, -2.0}) {
+      FreeThenPressed pad(name, beside_px);
+      for (int frame = 0; frame < 16; ++frame) {
+        CHECK(pad.show(0, 0, false).ok());
+      }
+      CAPTURE(name, beside_px, pad.wrench.axis_px.x, pad.wrench.axis_px.y);
+      CHECK(std::fabs(pad.wrench.axis_px.x + beside_px) < 0.15);
+      CHECK(std::fabs(pad.wrench.axis_px.y) < 0.15);
+      CHECK((beside_px == 0) == (pad.wrench.axis_px.x == 0));
+      const auto seen = pad.show(1, 0, true);
+      REQUIRE(seen.has_force());
+      const auto &f = seen.force_n, &m = seen.moment_n_mm;
+      const double found[] = {f.x, f.y, f.z, m.x, m.y, m.z};
+      for (std::size_t k = 0; k < 6; ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        CAPTURE(k, found[k], pad.load()[k]);
+        CHECK(std::fabs(found[k] - pad.load()[k]) < 4 * std::sqrt(seen.covariance(i, i)));
+      }
+    }
+  }
+}
 
 TEST_CASE("a press that begins slowly is not taken for the free pad", "[chain]") {
   struct Case {
@@ -801,7 +854,7 @@ TEST_CASE("later free frames move the tare a little, and say when it no longer h
     CHECK(pad.show(0, 0, false).ok());
   }
   const auto before = pad.wrench.dots;
-  const double most_mm = 4 * 0.06 * pad.wrench.pixel_mm;
+  const double most_mm = 4 * 0.06 * pad.wrench.camera.pitch_mm;
   const auto moved_mm = [&](std::size_t k) {
     const auto& dot = pad.wrench.dots[k];
     CHECK(dot.first.arc_mm == before[k].first.arc_mm);
@@ -822,8 +875,9 @@ TEST_CASE("later free frames move the tare a little, and say when it no longer h
     for (int frame = 0; frame < 60; ++frame) {
       pad.stray_px = 0.1 * frame;
       CHECK(pad.show(0, 0, false).ok());
-      at_end += moved_mm(0) > 0.99 * most_mm ? 1 : 0;
-      CHECK(moved_mm(0) < 1.001 * most_mm);
+      const double mm = moved_mm(pad.first_dot);
+      at_end += mm > 0.99 * most_mm ? 1 : 0;
+      CHECK(mm < 1.001 * most_mm);
     }
     CHECK(at_end > 10);
   }

@@ -70,7 +70,7 @@ class Fingertip {
       find_flat_area_.emplace(camera_, red_.rows, red_.cols);
     }
     if ((dots_ || o.side_dots > 0) && o.wrench) {
-      wrench_.emplace(o.camera, o);
+      wrench_.emplace(o);
     }
   }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fingerpad/depth/sampling.hpp"
+#include "fingerpad/pipeline/detail/fingertip_axis.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 
 namespace fingerpad {
@@ -278,6 +279,9 @@ struct FingertipLookUp {
 /// force or moment by the first places is beyond two standard deviations, and no dot moves further
 /// than four of its own. A free pad with a part beyond four without a press, which no touch exerts,
 /// is not tared until all are within two again.
+///
+/// All of it is about the pad's axis. Where the printed grid of the first of these frames shows it
+/// more than five standard deviations beside the camera's, the dots are seen from there.
 struct FingertipWrench {
   struct Place {
     double arc_mm = 0, azimuth_rad = 0;
@@ -296,20 +300,26 @@ struct FingertipWrench {
   static constexpr int free_frames = 16;
 
   Wrench<> wrench;
-  std::vector<Dot> dots;  // the printed grid, then the rows around it
+  Camera<double> camera;
+  Point2<double> axis_px = {0, 0};  // from the camera's
+  Index rows, cols;                 // of the printed grid
+  std::vector<Dot> dots;            // the printed grid, then the rows around it
   std::vector<std::uint8_t> side_touching;
   ReservedVector<fingerpad::Mark> marks;
-  double dot_sd_px, pixel_mm;
+  double dot_sd_px;
   int learnt = 0;
   bool is_tared = true;
 
-  FingertipWrench(const Camera<double>& camera, const FingertipOptions& o)
-      : wrench(camera, *o.wrench), dot_sd_px(o.dot_sd_px), pixel_mm(camera.pitch_mm) {
+  explicit FingertipWrench(const FingertipOptions& o)
+      : wrench(o.camera, *o.wrench),
+        camera(o.camera),
+        rows(o.free_dots_mm.rows()),
+        cols(o.free_dots_mm.cols()),
+        dot_sd_px(o.dot_sd_px) {
     require("FingertipOptions",
             {{"dot_sd_px", o.dot_sd_px, positive}, {"side_dots", o.side_dots, within(0, 100000)}});
     side_touching.resize(static_cast<std::size_t>(o.side_dots));
-    dots.resize(static_cast<std::size_t>(o.free_dots_mm.rows() * o.free_dots_mm.cols()) +
-                side_touching.size());
+    dots.resize(static_cast<std::size_t>(rows * cols) + side_touching.size());
     marks = ReservedVector<fingerpad::Mark>(dots.size());
   }
 
@@ -378,6 +388,9 @@ struct FingertipWrench {
       }
     }
     if ((by_first.has_force() || is_first) && wrench.begin(pressure_mpa)) {
+      if (learnt == 0) {
+        find_axis();
+      }
       learn();
     }
     seen = seen.has_force() ? seen : (*this)(pressure_mpa);
@@ -389,19 +402,30 @@ struct FingertipWrench {
     for (const Dot& dot : dots) {
       if (!dot.touches && dot.frames > 0) {
         const Place& at = dot.*place;
-        marks.push_back(
-            {at.arc_mm, at.azimuth_rad, dot.px, dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
+        marks.push_back({at.arc_mm, at.azimuth_rad, dot.px - axis_px,
+                         dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
       }
     }
     return wrench(marks, pressure_mpa);
   }
 
+  void find_axis() {
+    const LazyView grid(rows, cols, [this](Index i, Index j) {
+      return dots[static_cast<std::size_t>(i * cols + j)].px;
+    });
+    const AxisOfGrid axis = axis_of_grid(camera, grid);
+    if (norm(axis.at_mm) > 5 * axis.sd_mm) {
+      axis_px = {axis.at_mm.x / camera.pitch_mm,
+                 axis.at_mm.y / (camera.pitch_mm * camera.pixel_aspect)};
+    }
+  }
+
   void learn() {
     learnt += learnt <= free_frames ? 1 : 0;
     for (Dot& dot : dots) {
-      if (const auto found = wrench.place_in_free_picture(dot.px)) {
+      if (const auto found = wrench.place_in_free_picture(dot.px - axis_px)) {
         const bool is_later = dot.frames == free_frames;
-        const double most_mm = 4 * dot.sd_px * pixel_mm;
+        const double most_mm = 4 * dot.sd_px * camera.pitch_mm;
         const double most_rad = most_mm / wrench.base_radius_mm();
         dot.frames += is_later ? 0 : 1;
         dot.now.approach(*found, 1.0 / dot.frames);
