@@ -108,30 +108,8 @@ class DotLocator {
 
   DotLocator() : cells_(std::size_t(side) * side) {}
 
-  /// One step of Gauss and Newton from `center`.
-  template <class View>
-  DiscFit step(const View& image,
-               const Point2<double>& center,
-               const DiscMap& map,
-               double edge_px,
-               const Point2<double>& slope) {
-    DiscFit fit;
-    if (!load(image, center, map, edge_px)) {
-      return fit;
-    }
-    RowSums sums{};
-    const DiscRim rim(map);
-    std::array<Line, side> lines;
-    for (Index i = 0; i < rows_; ++i) {
-      lines[std::size_t(i)] = line(rim, float(double(y0_ + i) - center.y), slope);
-    }
-    for (Index j = 0; j < stride_; j += step_) {
-      add<Row>(lines, center.x, j, float(edge_px), sums);
-    }
-    return solve(summed(sums), center);
-  }
-
-  /// Repeats steps until the last is short enough: errors of a step are of its third power.
+  /// Steps of Gauss and Newton from `guess` until one is short: it errs by less than a fiftieth of
+  /// its length, since errors are of the third power.
   template <class View>
   DiscFit find(const View& image,
                Point2<double> guess,
@@ -139,56 +117,21 @@ class DotLocator {
                double edge_px,
                Point2<double> slope) {
     constexpr int most = 5;
-    constexpr double short_px = 0.15, longest_px = 1.5;
+    constexpr double short_px = 0.5, longest_px = 1.5;
+    const DiscRim rim(map);
     DiscFit fit;
     for (int k = 0; k < most; ++k) {
-      fit = step(image, guess, map, edge_px, slope);
-      if (!fit.good) {
-        return fit;
-      }
+      fit = load(image, guess, map, edge_px) ? step(guess, rim, edge_px, slope) : DiscFit();
       const Point2<double> move = fit.center - guess;
       const double length = norm(move);
-      slope = fit.slope;
-      if (length < short_px) {
+      if (!fit.good || length < short_px) {
         return fit;
       }
+      slope = fit.slope;
       guess += (std::min)(1.0, longest_px / length) * move;
     }
     fit.good = false;
     return fit;
-  }
-
-  /// Loads the window around a center; false if it is not inside the image or too large.
-  template <class View>
-  bool load(const View& image, const Point2<double>& center, const DiscMap& map, double edge_px) {
-    const double beyond = edge_px + around_px;
-    const double half_x = norm(Point2<double>{map.ja.x, map.jb.x}) + beyond;
-    const double half_y = norm(Point2<double>{map.ja.y, map.jb.y}) + beyond;
-    const double left = std::ceil(center.x - half_x), top = std::ceil(center.y - half_y);
-    const double right = std::floor(center.x + half_x), bottom = std::floor(center.y + half_y);
-    if (!(left >= 0 && top >= 0 && right < double(image.cols()) && bottom < double(image.rows())) ||
-        right - left >= side - 16 || bottom - top >= side - 16) {
-      return false;
-    }
-    x0_ = Index(left);
-    y0_ = Index(top);
-    cols_ = Index(right) - x0_ + 1;
-    rows_ = Index(bottom) - y0_ + 1;
-    step_ = lanes_in<Row, float>;
-    stride_ = (cols_ + step_ - 1) / step_ * step_;
-    base_ = float(image(y0_, x0_));
-    float* to = cells_.data();
-    const float base = base_;  // a store of floats could change the members
-    const Index x0 = x0_, cols = cols_, stride = stride_;
-    for (Index i = y0_; i < y0_ + rows_; ++i, to += stride) {
-      for (Index j = 0; j < cols; ++j) {
-        to[j] = float(image(i, x0 + j)) - base;
-      }
-      for (Index j = cols; j < stride; ++j) {
-        to[j] = 0;
-      }
-    }
-    return true;
   }
 
   /// Fits shape and blur of the edge as well, for a disc that is still: `map` is improved by a
@@ -208,14 +151,14 @@ class DotLocator {
       ProductSums<double, n + 1> sums;
       for (Index i = 0; i < rows_; ++i) {
         const double y = double(y0_ + i) - center.y;
-        const Line l = line(rim, float(y), slope);
+        const Line<float> l(rim, float(y), slope);
         for (Index j = 0; j < cols_; ++j) {
           const double x = double(x0_ + j) - center.x;
-          const Edge<float> e = edge<float>(l, float(x), float(edge_px));
+          const Edge<float> e(l, float(x), float(edge_px));
           if (e.inside != 0) {
             const double hx = double(e.hx), hy = double(e.hy);
             sums.add({1, x, y, -double(e.disc), hx, hy, hx * x, hx * y + hy * x, hy * y,
-                      double(e.wider), double(cells_[std::size_t(i * stride_ + j)])});
+                      double(e.wider), double(cells_[std::size_t(i * cols_ + j)] - base_)});
           }
         }
       }
@@ -267,86 +210,136 @@ class DotLocator {
   using Row = lanes<float, row_lanes<float>>;
   static constexpr int terms = 28;
   using Sums = std::array<double, terms>;
-  using RowSums = std::array<Row, terms>;
 
+  /// Loads the window around a center, wide enough for whole vectors; false if it is not inside the
+  /// image or too large.
+  template <class View>
+  bool load(const View& image, const Point2<double>& center, const DiscMap& map, double edge_px) {
+    constexpr Index step = lanes_in<Row, float>;
+    const double beyond = edge_px + around_px;
+    const double half_x = std::hypot(map.ja.x, map.jb.x) + beyond;
+    const double half_y = std::hypot(map.ja.y, map.jb.y) + beyond;
+    const double left = std::ceil(center.x - half_x), top = std::ceil(center.y - half_y);
+    const double right = std::floor(center.x + half_x), bottom = std::floor(center.y + half_y);
+    if (!(left >= 0 && top >= 0 && right < double(image.cols()) && bottom < double(image.rows())) ||
+        right - left >= side - 16 || bottom - top >= side - 16) {
+      return false;
+    }
+    cols_ = (Index(right) - Index(left) + step) / step * step;
+    rows_ = Index(bottom) - Index(top) + 1;
+    x0_ = (std::min)(Index(left), image.cols() - cols_);
+    y0_ = Index(top);
+    if (x0_ < 0) {
+      return false;
+    }
+    float* to = cells_.data();
+    const Index x0 = x0_, cols = cols_;  // a store of floats could change the members
+    for (Index i = y0_; i < y0_ + rows_; ++i, to += cols) {
+#pragma GCC unroll 4
+      for (Index j = 0; j < cols; ++j) {
+        to[j] = float(image(i, x0 + j));
+      }
+    }
+    base_ = cells_[0];
+    return true;
+  }
+
+  /// A row of the picture: coefficients of powers of x.
+  template <class V>
+  struct Line {
+    Line() = default;
+    Line(const DiscRim& r, float at, const Point2<double>& slope)
+        : y(V{} + at),
+          a0(V{} + (at * at * (r.yy + r.yyy * at) + 1e-6F)),
+          a1(V{} + at * (r.xy + r.xyy * at)),
+          a2(V{} + (r.xx + r.xxy * at)),
+          a3(V{} + r.xxx),
+          b0(V{} + at * (2 * r.yy + 3 * r.yyy * at)),
+          b1(V{} + (r.xy + 2 * r.xyy * at)),
+          b2(V{} + r.xxy),
+          light(V{} + (1 + float(slope.y) * at)),
+          light_x(V{} + float(slope.x)) {}
+    V y, a0, a1, a2, a3;  ///< distance from the center, in radii, squared
+    V b0, b1, b2;         ///< its derivative by y
+    V light, light_x;     ///< relative to that at the center
+  };
+
+  /// The picture of the disc at offsets x from its center.
   template <class V>
   struct Edge {
+    Edge() = default;
+    [[gnu::always_inline]] Edge(const Line<V>& l, const V& x, float width) {
+      const V one = V{} + 1.0F;
+      const V ax = l.a3 * x, axx = (ax + l.a2) * x;
+      const V square = (axx + l.a1) * x + l.a0;
+      const V fx = (ax + l.a2 + ax + ax + l.a2) * x + l.a1;
+      const V fy = (l.b2 * x + l.b1) * x + l.b0;
+      const V inverse = rough_inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
+      // distance from the edge, in its widths
+      const V t = (square - square * rough_inverse_sqrt<V>(square)) * inverse * (2.0F / width);
+      const V above = t > -one ? t : -one;
+      const V u = above < one ? above : one;
+      const V uu = u * u, gap = one - uu;
+      const V light = l.light_x * x + l.light;
+      const V bell = (0.9375F / width) * light * gap * gap;
+      const V steep = bell * inverse;
+      inside = t < V{} + (1.0F + float(around_px) / width) ? one : V{};
+      disc = light * (0.5F - u * (0.9375F - uu * (0.625F - 0.1875F * uu)));
+      hx = -steep * fx;
+      hy = -steep * fy;
+      wider = -bell * u;
+    }
     V inside;  ///< 1 in the window, else 0
     V disc;    ///< 1 in the disc, 0 outside, times the light's slope
     V hx, hy;  ///< derivatives of `disc` by x and y
     V wider;   ///< derivative of -`disc` by the width of the edge
   };
 
-  /// A row of the picture: coefficients of powers of x.
-  struct Line {
-    float y, a0, a1, a2, a3;  ///< distance from the center, in radii, squared
-    float b0, b1, b2;         ///< its derivative by y
-    float light, light_x;     ///< relative to that at the center
-  };
-  static Line line(const DiscRim& r, float y, const Point2<double>& slope) {
-    return {y,
-            y * y * (r.yy + r.yyy * y),
-            y * (r.xy + r.xyy * y),
-            r.xx + r.xxy * y,
-            r.xxx,
-            y * (2 * r.yy + 3 * r.yyy * y),
-            r.xy + 2 * r.xyy * y,
-            r.xxy,
-            1 + float(slope.y) * y,
-            float(slope.x)};
+  DiscFit step(const Point2<double>& center,
+               const DiscRim& rim,
+               double edge_px,
+               const Point2<double>& slope) const {
+    std::array<Line<Row>, side> lines;
+    for (Index i = 0; i < rows_; ++i) {
+      lines[std::size_t(i)] = {rim, float(double(y0_ + i) - center.y), slope};
+    }
+    std::array<Row, terms> sums{};
+    for (Index j = 0; j < cols_; j += lanes_in<Row, float>) {
+      add(lines, float(double(x0_ + j) - center.x), j, float(edge_px), sums);
+    }
+    Sums all;
+    for (std::size_t k = 0; k < terms; ++k) {
+      all[k] = double(sum(sums[k]));
+    }
+    return solve(all, center);
   }
 
-  /// The picture of the disc at offsets x from its center.
-  template <class V>
-  [[gnu::always_inline]] static Edge<V> edge(const Line& l, const V& x, float width) {
-    const V one = V{} + 1.0F;
-    const V square = ((l.a3 * x + l.a2) * x + l.a1) * x + (l.a0 + 1e-6F);
-    const V fx = (3 * l.a3 * x + 2 * l.a2) * x + l.a1;
-    const V fy = (l.b2 * x + l.b1) * x + l.b0;
-    const V inverse = rough_inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
-    // distance from the edge, in its widths
-    const V t = (square - square * rough_inverse_sqrt<V>(square)) * inverse * (2.0F / width);
-    const V above = t > -one ? t : -one;
-    const V u = above < one ? above : one;
-    const V uu = u * u, gap = one - uu;
-    const V light = l.light_x * x + l.light;
-    const V bell = (0.9375F / width) * light * gap * gap;
-    const V steep = bell * inverse;
-    return {t < V{} + (1.0F + float(around_px) / width) ? one : V{},
-            light * (0.5F - u * (0.9375F - uu * (0.625F - 0.1875F * uu))), -steep * fx, -steep * fy,
-            -bell * u};
-  }
-
-  template <class V>
-  [[gnu::always_inline]] void add(const std::array<Line, side>& lines,
-                                  double center_x,
+  /// Adds a column of vectors of the window to the sums.
+  [[gnu::always_inline]] void add(const std::array<Line<Row>, side>& lines,
+                                  float x0,
                                   Index j,
                                   float width,
-                                  RowSums& to) const {
-    alignas(64) std::array<float, 16> ramp{};
+                                  std::array<Row, terms>& to) const {
+    std::array<float, lanes_in<Row, float>> ramp;
     for (std::size_t k = 0; k < ramp.size(); ++k) {
-      ramp[k] = float(double(x0_ + j + Index(k)) - center_x);
+      ramp[k] = x0 + float(k);
     }
-    const V x = load_cells<V>(ramp.data());
+    const auto x = load_cells<Row>(ramp.data());
+    const Row base = Row{} + base_;
     // In two rounds: all 21 sums at once would not fit into the registers of most machines.
-    std::array<V, side> ins, discs, hxs, hys, vs;
-    std::array<float, side> ys;
-    std::size_t n = 0;
-    for (Index i = 0; i < rows_; ++i) {
-      const Line& l = lines[std::size_t(i)];
-      const Edge<V> e = edge<V>(l, x, width);
-      ys[n] = l.y;
-      vs[n] = load_cells<V>(cells_.data() + i * stride_ + j);
-      ins[n] = e.inside;
-      discs[n] = e.disc;
-      hxs[n] = e.hx;
-      hys[n] = e.hy;
-      n += std::size_t(any_lane(e.inside > V{}) ? 1 : 0);
-    }
-    V s0{}, s1{}, s2{}, s3{}, s4{}, s5{}, s6{}, s7{}, s8{}, s9{};
+    std::array<Row, side> ins, discs, hxs, hys, vs;
+    const auto n = std::size_t(rows_);
+    Row s0{}, s1{}, s2{}, s3{}, s4{}, s5{}, s6{}, s7{}, s8{}, s9{};
     for (std::size_t i = 0; i < n; ++i) {
-      const float y = ys[i];
-      const V in = ins[i], iny = in * y, v = vs[i] * in, disc = discs[i];
+      const Edge<Row> e(lines[i], x, width);
+      ins[i] = e.inside;
+      discs[i] = e.disc;
+      hxs[i] = e.hx;
+      hys[i] = e.hy;
+      vs[i] = (load_cells<Row>(cells_.data() + Index(i) * cols_ + j) - base) * e.inside;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const Row y = lines[i].y, in = ins[i], disc = discs[i], v = vs[i], iny = in * y;
       s0 += in;
       s1 += iny;
       s2 += iny * y;
@@ -358,10 +351,9 @@ class DotLocator {
       s8 += disc * disc;
       s9 += disc * v;
     }
-    V s10{}, s11{}, s12{}, s13{}, s14{}, s15{}, s16{}, s17{}, s18{}, s19{}, s20{};
+    Row s10{}, s11{}, s12{}, s13{}, s14{}, s15{}, s16{}, s17{}, s18{}, s19{}, s20{};
     for (std::size_t i = 0; i < n; ++i) {
-      const float y = ys[i];
-      const V hx = hxs[i], hy = hys[i], disc = discs[i], v = vs[i];
+      const Row y = lines[i].y, disc = discs[i], v = vs[i], hx = hxs[i], hy = hys[i];
       s10 += hx;
       s11 += hx * y;
       s12 += hy;
@@ -395,13 +387,6 @@ class DotLocator {
       return sum(Half(detail::load<Half>(bytes) + detail::load<Half>(bytes + sizeof(Half))));
     }
   }
-  static Sums summed(const RowSums& rows) {
-    Sums sums;
-    for (std::size_t k = 0; k < terms; ++k) {
-      sums[k] = double(sum(rows[k]));
-    }
-    return sums;
-  }
 
   DiscFit solve(const Sums& s, const Point2<double>& center) const {
     // Unknowns: light and its two slopes, contrast, contrast times the two steps. L D L^T, in which
@@ -416,11 +401,14 @@ class DotLocator {
     double inverse[6];  // of D
     double square = s[5];
     DiscFit fit;
+#pragma GCC unroll 6
     for (int i = 0; i < 6; ++i) {
       double row[6];  // of L D
       double rest = a[i][i];
+#pragma GCC unroll 6
       for (int j = 0; j < i; ++j) {
         row[j] = a[i][j];
+#pragma GCC unroll 6
         for (int k = 0; k < j; ++k) {
           row[j] -= row[k] * a[j][k];
         }
@@ -434,8 +422,10 @@ class DotLocator {
       inverse[i] = 1 / rest;
       square -= p[i] * p[i] * inverse[i];
     }
+#pragma GCC unroll 6
     for (int i = 5; i >= 0; --i) {
       p[i] *= inverse[i];
+#pragma GCC unroll 6
       for (int k = i + 1; k < 6; ++k) {
         p[i] -= a[k][i] * p[k];
       }
@@ -453,7 +443,7 @@ class DotLocator {
   }
 
   std::vector<float> cells_;
-  Index x0_ = 0, y0_ = 0, rows_ = 0, cols_ = 0, stride_ = 0, step_ = 1;
+  Index x0_ = 0, y0_ = 0, rows_ = 0, cols_ = 0;  ///< of the window
   float base_ = 0;
 };
 

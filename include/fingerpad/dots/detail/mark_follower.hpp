@@ -52,7 +52,7 @@ class MarkFollower {
     bool still = false;   ///< does not move and cannot be seen
     bool found = false;   ///< in this frame
     bool placed = false;  ///< in this frame, found or not
-    bool likely = false;  ///< found but for its shape, which lost neighbours may spoil
+    bool seen = false;    ///< found but for its shape, which lost neighbours may spoil
     Point free = missing(), last = missing(), velocity = {0, 0};
     Point place = missing();   ///< found, else where it would be
     Point deviation = {0, 0};  ///< place less what its last motion made expect
@@ -164,15 +164,14 @@ class MarkFollower {
       Mark& m = marks_[k];
       const Point given = place_of(k);
       m.last = m.free;
-      m.found = is_plausible(given);
+      m.found = m.seen = is_plausible(given);
       m.place = m.found ? given : m.free;
     }
-    place_lost(true);
+    place_lost();
     for (const std::size_t k : order_) {
       marks_[k].velocity = {0, 0};
       marks_[k].last = marks_[k].place;
     }
-    lost_ = 0;
   }
 
   /// Finds the marks of a frame; how many. O(marks x pixels of a mark); allocates nothing.
@@ -184,15 +183,18 @@ class MarkFollower {
       keep_noise();
     }
     pass(image);
-    place_lost(true);
+    for (const std::size_t k : order_) {
+      marks_[k].seen = marks_[k].found;
+    }
+    place_lost();
     for (const std::size_t k : order_) {  // with the shape that all neighbours give
-      if (marks_[k].found && marks_[k].surprise_px > 0.25) {
+      if (marks_[k].found && marks_[k].surprise_px > 0.15) {
         (void)locate(image, k, false);
       }
     }
     for (const std::size_t k : order_) {
       Mark& m = marks_[k];
-      m.found = m.found && norm(m.place - m.free - displacement(k)[0]) < max_bend * m.next_px;
+      m.found = m.found && norm(m.place - m.free - displacement<1>(k)[0]) < max_bend * m.next_px;
     }
     drop_strangers();
     return std::count_if(order_.begin(), order_.end(),
@@ -203,8 +205,6 @@ class MarkFollower {
   void keep(bool good) {
     if (good) {
       keep_noise();
-      lost_ = std::size_t(std::count_if(order_.begin(), order_.end(),
-                                        [&](std::size_t k) { return !marks_[k].found; }));
     }
     for (const std::size_t k : order_) {
       Mark& m = marks_[k];
@@ -293,8 +293,9 @@ class MarkFollower {
 
   /// The displacement of a mark from the free pad and its derivatives, as its neighbours are
   /// displaced; those not placed yet are taken to have this mark's deviation.
-  std::array<Point, terms> displacement(std::size_t k) const {
-    std::array<Point, terms> d{};
+  template <std::size_t N = terms>
+  std::array<Point, N> displacement(std::size_t k) const {
+    std::array<Point, N> d{};
     const std::size_t* const others = neighbours_.data() + k * around_;
     const Weights* const weights = weights_.data() + k * around_;
     for (std::size_t n = 0; n < around_; ++n) {
@@ -302,30 +303,26 @@ class MarkFollower {
       const Point at =
           other.placed ? other.place : other.last + other.velocity + marks_[k].deviation;
       const Point moved = at - other.free;
-      for (std::size_t i = 0; i < terms; ++i) {
+      for (std::size_t i = 0; i < N; ++i) {
         d[i] += weights[n][i] * moved;
       }
     }
     return d;
   }
 
-  /// Looks for all marks. The lost are tried again where those found put them, as long as that
-  /// finds any; with a wide look if they are more than in the last frame.
+  /// Looks for all marks. The lost are tried again where those found put them, then with a wide
+  /// look as long as that finds any.
   template <class View>
   void pass(const View& image) {
     for (const std::size_t k : order_) {
-      marks_[k].found = marks_[k].placed = marks_[k].likely = false;
+      marks_[k].found = marks_[k].seen = marks_[k].placed = false;
     }
     std::size_t lost = order_.size(), before = lost + 1;
-    for (int round = 0; round < tries && lost > 0; ++round) {
-      const bool wide = round > 1 && lost > lost_;
-      if (round > 1 && lost == before && !(wide && round == 2)) {
-        break;
-      }
+    for (int round = 0; round < tries && lost > 0 && (round < 3 || lost < before); ++round) {
       before = lost;
       lost = 0;
       if (round > 0) {
-        place_lost(false);
+        place_lost();
       }
       for (const std::size_t k : order_) {
         Mark& m = marks_[k];
@@ -334,31 +331,36 @@ class MarkFollower {
             m.deviation = neighbours_deviation(k);
             m.place = m.last + m.velocity + m.deviation;
           }
-          lost += static_cast<std::size_t>(!locate(image, k, wide));
+          lost += static_cast<std::size_t>(!locate(image, k, round > 1));
         }
       }
     }
   }
 
-  /// Mean deviation of the neighbours that are found.
+  /// How far a mark is off what its last motion makes expect if it moves like its neighbours; those
+  /// not found yet are taken to deviate like the mean of those found.
   Point neighbours_deviation(std::size_t k) const {
-    Point sum = {0, 0};
-    double count = 0;
-    for (const std::size_t n : neighbours(k)) {
-      if (marks_[n].found) {
-        sum += marks_[n].deviation;
+    Point sum = {0, 0}, deviation = {0, 0};
+    double count = 0, rest = 1;
+    for (std::size_t n = 0; n < around_; ++n) {
+      const Mark& m = marks_[neighbours(k)[n]];
+      if (m.found) {
+        const double weight = weights_[k * around_ + n][0];
+        sum += m.deviation;
         count += 1;
+        deviation += weight * m.deviation;
+        rest -= weight;
       }
     }
-    return count > 0 ? sum / count : sum;
+    return count > 0 ? deviation + rest / count * sum : sum;
   }
 
   /// Puts lost marks where they have moved like the mean of their neighbours.
-  void place_lost(bool likely) {
+  void place_lost() {
     for (int sweep = 0; sweep < tries; ++sweep) {
       for (const std::size_t k : order_) {
         Mark& m = marks_[k];
-        if (!m.found && (likely || !m.likely)) {
+        if (!m.seen) {
           Point sum = {0, 0};
           for (const std::size_t n : neighbours(k)) {
             sum += marks_[n].place - marks_[n].last;
@@ -397,10 +399,10 @@ class MarkFollower {
     m.placed = true;
     m.residual_ratio = ratio_of(fit);
     m.surprise_px = norm(fit.center - guess);
-    m.likely =
+    m.seen =
         fit.good && contrast > least_contrast && contrast < most_contrast && m.surprise_px < reach;
-    m.found = m.likely && m.residual_ratio < most_residual * noise_;
-    m.place = m.likely ? fit.center : guess;
+    m.found = m.seen && m.residual_ratio < most_residual * noise_;
+    m.place = m.seen ? fit.center : guess;
     m.deviation = m.place - m.last - m.velocity;
     if (m.found && is_finite(noise_)) {
       m.slope = fit.slope;
@@ -469,7 +471,6 @@ class MarkFollower {
   }
 
   std::size_t around_;
-  std::size_t lost_ = 0;  ///< marks, in the last good frame
   double noise_ = 0;      ///< residuals of the frames to that of the free pad's picture; 0: unknown
   double edge_px_ = 2;    ///< half width of the blurred edge
   std::vector<Mark> marks_;
