@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Small and large contact regions of a round pad from exact depths. The errors are of the area,
+// A contact region of a round pad from exact depths. The errors are of the area,
 // relative to it, and of the center, over 30 contacts: areas within a fifth of the group's, up to 2
 // mm off the axis, flat or bulging, level or tilted. They are the errors of the method without
 // noise. "on scenes": finite-element membranes, from noisy frames.
@@ -16,7 +16,6 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "bench/support/scene_contact.hpp"
-#include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/soap_film.hpp"
 
@@ -39,8 +38,7 @@ struct Scene {
   test::RoundContact contact;
   Image<S> depth;
 
-  template <class CameraType>
-  Scene(const CameraType& camera, const test::RoundContact& c)
+  Scene(const Camera<double>& camera, const test::RoundContact& c)
       : contact(c), depth(test::depths_of<S>(camera, test::RoundFilm(c), rows, cols)) {}
 };
 
@@ -48,11 +46,10 @@ double radius_of(double area_mm2) {
   return std::sqrt(area_mm2 / std::numbers::pi);
 }
 
-template <class CameraType>
 struct Bench {
   std::string group;
   double area_mm2;
-  CameraType camera;
+  Camera<double> camera;
   std::shared_ptr<const Scene<float>> timed =
       std::make_shared<Scene<float>>(camera, test::RoundContact{.radius_mm = radius_of(area_mm2)});
 
@@ -101,9 +98,7 @@ struct Bench {
         group + "/" + name, pixels, memory.bytes(),
         [=, from = timed] { benchmark::DoNotOptimize((*region)(from->depth, *mask)); },
         [=](auto& counters) {
-          if constexpr (std::is_same_v<CameraType, Camera<double>>) {
-            bench::note_area_on_scenes<Region>(counters, test);
-          }
+          bench::note_area_on_scenes<Region>(counters, test);
           bench::note_errors(counters, "area", "share", errors().area);
           bench::note_errors(counters, "center", "mm", errors().center_mm);
         });
@@ -160,11 +155,6 @@ struct Bench {
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   const auto camera = test::pad_camera(480, 640, 0.0768);
-  const auto heights = test::height_map(480, 640, 0.0768);
-  const Bench<Camera<double>> little{"110 mm^2", 110, camera}, large{"350 mm^2", 350, camera};
-  const Bench<OrthographicCamera<double>> flat{"110 mm^2, heights", 110, heights};
-  little.add_all();
-  large.add_all();
-  flat.add_all();
+  Bench{"350 mm^2", 350, camera}.add_all();
   return bench::run(argc, argv);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The surface fitted to a contact in a float depth map of 640 x 480 pixels with noise of 0.02 mm,
-// along refracted rays and as a map of heights. Timed: a convex sphere of 18 mm, 200 px wide.
+// along refracted rays. Timed: a convex sphere of 18 mm, 200 px wide.
 // Errors: of the mean curvature over 40 spheres of 15 to 40 mm in other places, and of the normal
 // over 40 planes of slopes up to 0.4. First row: a pass that reads depth and mask and sums the
 // depths in contact.
@@ -16,7 +16,7 @@
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
 #include "fingerpad/contact/surface.hpp"
-#include "fingerpad/optics/orthographic_camera.hpp"
+#include "fingerpad/optics/camera.hpp"
 
 using namespace fingerpad;
 using bench::Image;
@@ -70,8 +70,7 @@ struct Contact {
   Image<float> depth{height_px, width_px, static_cast<float>(test::nan)};
   Mask mask{height_px, width_px, 0};
 
-  template <class CameraType>
-  Contact(const CameraType& camera, const Object& o, std::uint64_t seed) {
+  Contact(const Camera<double>& camera, const Object& o, std::uint64_t seed) {
     test::Random random(seed);
     const auto middle = point_at(camera, o.middle_px.y, o.middle_px.x, 9.0);
     for (Index i = 0; i < height_px; ++i) {
@@ -97,10 +96,8 @@ struct Contact {
   }
 };
 
-template <class CameraType>
 struct Bench {
-  std::string group;
-  CameraType camera = {};
+  Camera<double> camera = {};
   std::shared_ptr<const Contact> timed = std::make_shared<Contact>(camera, Object(), 1);
 
   /// `fit(contact, object)` returns the error.
@@ -115,7 +112,7 @@ struct Bench {
       return all;
     });
     bench::add(
-        group + "/" + name, pixels, bytes,
+        "rays/" + name, pixels, bytes,
         [=, contact = timed] { benchmark::DoNotOptimize(fit(*contact, Object())); },
         [=](auto& counters) {
           bench::note_errors(counters, flat ? "normal" : "curvature", flat ? "deg" : "1/mm",
@@ -155,7 +152,7 @@ struct Bench {
   void add_all() const {
     const auto sum = std::make_shared<double>(0);
     bench::add(
-        group + "/streaming sum of depths", pixels, 0,
+        "rays/streaming sum of depths", pixels, 0,
         [=, contact = timed] {
           for (std::size_t k = 0; k < pixels; ++k) {
             *sum +=
@@ -163,7 +160,7 @@ struct Bench {
           }
         },
         [](auto&) {});
-    bench::add_streaming(group, pixels);
+    bench::add_streaming("rays", pixels);
     add_fit("quadric", false, 0, [camera = camera](const Contact& c, const Object& o) {
       const auto r = fit_surface(camera, c.depth, c.mask);
       return (r.curvature_1_per_mm + r.curvature_2_per_mm) / 2 - o.curvature_per_mm;
@@ -179,9 +176,6 @@ struct Bench {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  const Bench<Camera<double>> rays{"rays"};
-  const Bench<OrthographicCamera<double>> heights{"heights"};
-  rays.add_all();
-  heights.add_all();
+  Bench{}.add_all();
   return bench::run(argc, argv);
 }

@@ -229,8 +229,5 @@ int main(int argc, char** argv) {
   published.add_pixelwise();
   published.add_rows<float>("exponential-free float <3, 6>");
   published.add_rows<double>("exponential-free double <9, 12, 8>");
-  const Bench deep{bench::full_pad(18)};
-  deep.add_baselines();
-  deep.add_rows<float>("exponential-free float <3, 6>");
   return bench::run(argc, argv);
 }

@@ -17,16 +17,13 @@ using bench::Image;
 namespace {
 
 template <class T>
-cv::Mat as_mat(Image<T>& image, int channels = 1) {
-  return cv::Mat(int(image.rows()), int(image.cols()) / channels,
-                 CV_MAKETYPE(cv::DataType<T>::depth, channels), image.cells.data());
+cv::Mat as_mat(Image<T>& image) {
+  return cv::Mat(int(image.rows()), int(image.cols()), cv::DataType<T>::type, image.cells.data());
 }
 
 struct Bench {
   bench::Scene scene;
   bench::Frame<std::uint8_t> planar = scene.pressed_frame<std::uint8_t>();
-  bench::Frame<std::uint16_t> deep = scene.pressed_frame<std::uint16_t>();
-  bench::Interleaved<std::uint8_t> bgr{planar};
   std::vector<Ray<double>> pencils;
 
   explicit Bench(const bench::Scene& which) : scene(which) {
@@ -52,24 +49,17 @@ struct Bench {
 
   /// `work(smooth)` fills both planes. `memory` is made before everything that `work` holds.
   template <class S = float, class Work>
-  void add(const std::string& group,
-           const std::string& name,
-           Work work,
-           const bench::Memory& memory = {}) const {
+  void add(const std::string& name, Work work, const bench::Memory& memory = {}) const {
     const auto smooth = std::make_shared<bench::Frame<S>>(scene.pad.rows, scene.pad.cols);
     const auto made = bench::kept([=, this] { return errors(*smooth); });
     bench::add(
-        scene.name + ", " + group + "/" + name, scene.pixels(), memory.bytes(),
+        scene.name + ", two planes/" + name, scene.pixels(), memory.bytes(),
         [=]() mutable { work(*smooth); },
         [=](auto& counters) { bench::note_errors(counters, "depth", "mm", made()); });
   }
 
   template <class S, class Red, class Green>
-  void add_ours(const std::string& group,
-                const std::string& name,
-                const Red& red,
-                const Green& green,
-                int window_px) const {
+  void add_ours(const std::string& name, const Red& red, const Green& green, int window_px) const {
     const auto reference = scene.pad.reference<S>();
     const bench::Memory memory;
     const auto rows = std::make_shared<detail::ColourRows<S>>(
@@ -82,62 +72,32 @@ struct Bench {
         rows->next(r, g, scale, &smooth.red(i, 0), &smooth.green(i, 0));
       }
     };
-    add<S>(group, name, work, memory);
+    add<S>(name, work, memory);
   }
 
   template <class Red, class Green>
-  void add_all_ours(const std::string& group, const Red& red, const Green& green) const {
-    add_ours<float>(group, "NoSmoothing", red, green, 1);
-    add_ours<float>(group, "BiasFreeMean, the default", red, green, DepthOptions().window_px);
-    add_ours<double>(group, "BiasFreeMean, double", red, green, DepthOptions().window_px);
-    bench::add_streaming(scene.name + ", " + group, scene.pixels());
+  void add_all_ours(const Red& red, const Green& green) const {
+    add_ours<float>("NoSmoothing", red, green, 1);
+    add_ours<float>("BiasFreeMean, the default", red, green, DepthOptions().window_px);
+    add_ours<double>("BiasFreeMean, double", red, green, DepthOptions().window_px);
+    bench::add_streaming(scene.name + ", two planes", scene.pixels());
   }
 
-  void add_planar() {
+  void add_all() {
     const cv::Mat red = as_mat(planar.red);
     const cv::Mat green = as_mat(planar.green);
-    add("two planes", "cv::boxFilter to float", [=](bench::Frame<float>& smooth) {
+    add("cv::boxFilter to float", [=](bench::Frame<float>& smooth) {
       cv::boxFilter(red, as_mat(smooth.red), CV_32F, window);
       cv::boxFilter(green, as_mat(smooth.green), CV_32F, window);
     });
     cv::Mat small[2];
-    add("two planes", "cv::blur to 8 bit, then to float", [=](bench::Frame<float>& smooth) mutable {
+    add("cv::blur to 8 bit, then to float", [=](bench::Frame<float>& smooth) mutable {
       cv::blur(red, small[0], window);
       cv::blur(green, small[1], window);
       small[0].convertTo(as_mat(smooth.red), CV_32F);
       small[1].convertTo(as_mat(smooth.green), CV_32F);
     });
-    add_all_ours("two planes", planar.red, planar.green);
-  }
-
-  void add_interleaved() {
-    const cv::Mat image = as_mat(bgr.cells, 3);
-    cv::Mat part[2];
-    add("BGR", "cv::extractChannel, cv::boxFilter", [=](bench::Frame<float>& smooth) mutable {
-      cv::extractChannel(image, part[0], 2);
-      cv::extractChannel(image, part[1], 1);
-      cv::boxFilter(part[0], as_mat(smooth.red), CV_32F, window);
-      cv::boxFilter(part[1], as_mat(smooth.green), CV_32F, window);
-    });
-    cv::Mat all;
-    add("BGR", "cv::boxFilter, cv::extractChannel", [=](bench::Frame<float>& smooth) mutable {
-      cv::boxFilter(image, all, CV_32F, window);
-      cv::extractChannel(all, as_mat(smooth.red), 2);
-      cv::extractChannel(all, as_mat(smooth.green), 1);
-    });
-    add_all_ours("BGR", bgr.red(), bgr.green());
-  }
-
-  void add_deep() {
-    const cv::Mat red = as_mat(deep.red);
-    const cv::Mat green = as_mat(deep.green);
-    add("two planes of 16 bit", "cv::boxFilter to float", [=](bench::Frame<float>& smooth) {
-      cv::boxFilter(red, as_mat(smooth.red), CV_32F, window);
-      cv::boxFilter(green, as_mat(smooth.green), CV_32F, window);
-      as_mat(smooth.red) *= 1.0 / 256;
-      as_mat(smooth.green) *= 1.0 / 256;
-    });
-    add_all_ours("two planes of 16 bit", deep.red, deep.green);
+    add_all_ours(planar.red, planar.green);
   }
 
   static inline const cv::Size window{29, 29};
@@ -147,11 +107,6 @@ struct Bench {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  Bench full(bench::full_pad());
-  full.add_planar();
-  full.add_interleaved();
-  full.add_deep();
-  Bench round(bench::round_pad());
-  round.add_interleaved();
+  Bench(bench::full_pad()).add_all();
   return bench::run(argc, argv);
 }

@@ -156,16 +156,7 @@ int main(int argc, char** argv) {
   fluid.pitch_px = 18.75;
   fluid.radius_px = 4.375;
   fluid.noise = 1;
-  test::Print gel = fluid;  // about 80 dots
-  gel.rows = 8;
-  gel.cols = 10;
-  gel.pitch_px = 55;
-  gel.radius_px = 9;
-  test::Print small = fluid;
-  small.radius_px = 2.5;
-  const Frames many(fluid), few(gel), tiny(small);
+  const Frames many(fluid);
   add_all("21x21 dots, radius 4.4 px", many);
-  add_all("8x10 dots, radius 9 px", few);
-  add_all("21x21 dots, radius 2.5 px", tiny);
   return bench::run(argc, argv);
 }

@@ -247,19 +247,11 @@ void add_opencv(const std::string& group, Index window) {
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   using Counts = std::uint16_t;
-  add<Counts, double>("quiet/window 16, double", false, 16, false);
-  add<Counts, float>("quiet/window 16, float", false, 16, false);
-  add<float, float>("quiet/window 16, float readings", false, 16, false);
-  add<Counts, double>("quiet/window 64, double", false, 64, false);
-  add<Counts, double>("quiet/window 16, hand", false, 16, true);
-  bench::add_streaming("quiet");
-  for (const Index window : {16, 64}) {
-    const std::string group = "vibrating, window " + std::to_string(window) + "/";
-    add<Counts, double>(group + "double, the default", true, window, false);
-    add<Counts, float>(group + "float", true, window, false);
-    add<Counts, double>(group + "hand", true, window, true);
-    add_two_passes(group, window);
-    add_opencv(group, window);
-  }
+  const std::string group = "vibrating, window 16/";
+  add<Counts, double>(group + "double, the default", true, 16, false);
+  add<Counts, float>(group + "float", true, 16, false);
+  add<Counts, double>(group + "hand", true, 16, true);
+  add_two_passes(group, 16);
+  add_opencv(group, 16);
   return bench::run(argc, argv);
 }

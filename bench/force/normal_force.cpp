@@ -155,6 +155,5 @@ void add_all(const std::string& type) {
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   add_all<double>("double");
-  add_all<float>("float");
   return bench::run(argc, argv);
 }

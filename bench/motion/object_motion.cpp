@@ -15,7 +15,6 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene_motion.hpp"
-#include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/published/object_motion.hpp"
 #include "support/pad.hpp"
 #include "support/rolling.hpp"
@@ -149,47 +148,6 @@ void add_opencv_frame() {
       [](auto&) {});
 }
 
-/// Dots in space from a depth map of 640 x 480 pixels.
-template <class S>
-void add_spatial_dots(const std::string& name) {
-  struct Data {
-    Camera<S> camera;
-    test::Image<float> depth{480, 640, 0.0F};
-    test::Image<Point2<double>> dots_px{21, 21};
-    test::Image<Point3<S>> dots_mm{21, 21};
-  };
-  const auto d = std::make_shared<Data>();
-  // linear between pixels, so depths between them are known
-  const auto depth_at = [](double row, double col) { return 8 + 0.01 * row - 0.004 * col; };
-  for (Index i = 0; i < 480; ++i) {
-    for (Index j = 0; j < 640; ++j) {
-      d->depth(i, j) = static_cast<float>(depth_at(static_cast<double>(i), static_cast<double>(j)));
-    }
-  }
-  for (Index i = 0; i < 21; ++i) {
-    for (Index j = 0; j < 21; ++j) {
-      d->dots_px(i, j) = {125.3 + 19.47 * static_cast<double>(j),
-                          45.1 + 19.47 * static_cast<double>(i)};
-    }
-  }
-  bench::add(
-      "dots in space, 21x21/" + name, 21 * 21, 21 * 21 * sizeof(Point3<S>),
-      [d] { benchmark::DoNotOptimize(spatial_dots(d->camera, d->dots_px, d->depth, d->dots_mm)); },
-      [d, depth_at](auto& counters) {
-        std::vector<double> errors;
-        for (std::size_t k = 0; k < d->dots_mm.cells.size(); ++k) {
-          const auto& at = d->dots_px.cells[k];
-          const auto truth = point_at(Camera<double>(), at.y, at.x, depth_at(at.y, at.x));
-          const auto& p = d->dots_mm.cells[k];
-          const Point3<double> off{static_cast<double>(p.x) - truth.x,
-                                   static_cast<double>(p.y) - truth.y,
-                                   static_cast<double>(p.z) - truth.z};
-          errors.push_back(std::sqrt(squared_norm(off)));
-        }
-        bench::note_errors(counters, "place", "mm", errors);
-      });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -202,7 +160,5 @@ int main(int argc, char** argv) {
             [](const test::Dots& free) { return ObjectMotion<float>(free.rows(), free.cols()); });
   add_opencv_frame();
   bench::add_streaming("frame of 21x21 dots");
-  add_spatial_dots<double>("double");
-  add_spatial_dots<float>("float");
   return bench::run(argc, argv);
 }

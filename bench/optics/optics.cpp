@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Rays, points and pixels, one call for each pixel of an image. Errors are against long double at
-// the same pixel: of a ray, its path factor; of the virtual heights, the worse of the two; of a
-// point, its position; of a pixel, the distance from the one that the point was made of.
-// "published": with angles, one height, the sine of eq. 13.
+// Virtual heights and points, one call for each pixel of an image. Errors are against long double
+// at the same pixel: the worse of the two heights; the position of a point. "published": one height,
+// and the sine of eq. 13.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -42,16 +41,6 @@ published::Pinhole<S> pinhole_of(const Camera<S>& c) {
   return {c.plate_distance_mm, c.refractive_index, c.center_y_px, c.center_x_px, c.pitch_mm};
 }
 
-/// Rays by the angles of Snell's law, as in the slides, through a plate of zero thickness.
-template <class S>
-Ray<S> ray_by_angles(const Camera<S>& camera, const S& row, const S& col) {
-  const S x = col - camera.center_x_px, y = row - camera.center_y_px;
-  const S air = std::atan(std::sqrt(x * x + y * y) * tangent_per_px(camera));
-  const S fluid = std::asin(std::sin(air) / camera.refractive_index);
-  return {std::tan(air), std::tan(fluid), std::cos(fluid), camera.plate_distance_mm * std::tan(air),
-          1 + 1 / std::cos(fluid)};
-}
-
 /// Of the pencil that comes back along a ray.
 template <class S>
 struct Heights {
@@ -62,9 +51,6 @@ struct Heights {
   Heights(const S& both) : meridional_mm(both), sagittal_mm(both) {}
 };
 
-double error(const Ray<Long>& a, const Ray<Long>& b) {
-  return static_cast<double>(a.path_factor - b.path_factor);
-}
 double error(const Heights<Long>& a, const Heights<Long>& b) {
   return static_cast<double>((std::max)(std::abs(a.meridional_mm - b.meridional_mm),
                                         std::abs(a.sagittal_mm - b.sagittal_mm)));
@@ -72,15 +58,7 @@ double error(const Heights<Long>& a, const Heights<Long>& b) {
 double error(const Point3<Long>& a, const Point3<Long>& b) {
   return static_cast<double>(std::hypot(a.x - b.x, a.y - b.y));
 }
-double error(const Point2<Long>& a, const Point2<Long>& b) {
-  return static_cast<double>(std::hypot(a.x - b.x, a.y - b.y));
-}
 
-template <class S>
-Ray<Long> widened(const Ray<S>& r) {
-  return {Long(r.tan_air), Long(r.tan_fluid), Long(r.cos_fluid), Long(r.plate_rho_mm),
-          Long(r.path_factor)};
-}
 template <class S>
 Heights<Long> widened(const Heights<S>& h) {
   Heights<Long> out(Long(h.meridional_mm));
@@ -90,10 +68,6 @@ Heights<Long> widened(const Heights<S>& h) {
 template <class S>
 Point3<Long> widened(const Point3<S>& p) {
   return {Long(p.x), Long(p.y), Long(p.z)};
-}
-template <class S>
-Point2<Long> widened(const Point2<S>& p) {
-  return {Long(p.x), Long(p.y)};
 }
 
 /// `call(k, row, col, depth)` and `truth(row, col, depth)` are in mm, px or 1.
@@ -134,11 +108,7 @@ struct Calls {
   auto exact_heights() const {
     return [e = exact](Long i, Long j, Long) { return Heights<Long>(ray_at_pixel(e, i, j)); };
   }
-  void add_rays() const {
-    add<S>(
-        "ray/" + row, "path factor", "1",
-        [c = camera](std::size_t, S i, S j, S) { return ray_at_pixel(c, i, j); },
-        [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
+  void add_heights() const {
     add<S>(
         "virtual heights/" + row, "height", "mm",
         [c = camera](std::size_t, S i, S j, S) { return Heights<S>(ray_at_pixel(c, i, j)); },
@@ -154,10 +124,6 @@ struct Calls {
         },
         exact_heights());
     add<S>(
-        "ray/published angles, " + row, "path factor", "1",
-        [c = camera](std::size_t, S i, S j, S) { return ray_by_angles(c, i, j); },
-        [e = exact](Long i, Long j, Long) { return ray_at_pixel(e, i, j); });
-    add<S>(
         "point/published sine, " + row, "point", "mm",
         [pinhole](std::size_t, S i, S j, S z) { return published::point_at(pinhole, i, j, z); },
         [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
@@ -167,19 +133,6 @@ struct Calls {
         "point/" + row, "point", "mm",
         [c = camera](std::size_t, S i, S j, S z) { return point_at(c, i, j, z); },
         [e = exact](Long i, Long j, Long z) { return point_at(e, i, j, z); });
-  }
-  void add_pixels() const {
-    const auto points = std::make_shared<std::vector<Point3<S>>>(pixels);
-    each_pixel<Long>([&](std::size_t k, Long i, Long j, Long z) {
-      const auto p = point_at(exact, i, j, z);
-      (*points)[k] = {S(p.x), S(p.y), S(p.z)};
-    });
-    add<S>(
-        "pixel/" + row, "pixel", "px",
-        [c = camera, points](std::size_t k, S, S, S) { return pixel_of(c, (*points)[k]); },
-        [](Long i, Long j, Long) {
-          return Point2<Long>{j, i};
-        });
   }
 };
 
@@ -196,16 +149,13 @@ void add_all_opencv() {
   });
   cv::Mat points = from.clone(), carried = image.clone();
   constexpr long bytes = sizeof(float) * pixels;
-  for (const std::string group : {"ray", "point", "pixel"}) {
-    bench::add(
-        group + "/cv::undistortPoints, float", pixels, 2 * bytes,
-        [=]() mutable { cv::undistortPoints(from, points, matrix, distortion); }, [](auto&) {});
-    bench::add(
-        group + "/cv::remap, float, linear", pixels, bytes,
-        [=]() mutable { cv::remap(image, carried, map[0], map[1], cv::INTER_LINEAR); },
-        [](auto&) {});
-    bench::add_streaming(group, pixels);
-  }
+  bench::add(
+      "point/cv::undistortPoints, float", pixels, 2 * bytes,
+      [=]() mutable { cv::undistortPoints(from, points, matrix, distortion); }, [](auto&) {});
+  bench::add(
+      "point/cv::remap, float, linear", pixels, bytes,
+      [=]() mutable { cv::remap(image, carried, map[0], map[1], cv::INTER_LINEAR); }, [](auto&) {});
+  bench::add_streaming("point", pixels);
 }
 
 }  // namespace
@@ -221,16 +171,14 @@ int main(int argc, char** argv) {
       single_thick("float, plate of 5 mm", behind_plate);
   const Calls<double, OrthographicCamera> heights("OrthographicCamera, double", from_above);
   const Calls<float, OrthographicCamera> single_heights("OrthographicCamera, float", from_above);
-  thin.add_rays();
-  single.add_rays();
-  thick.add_rays();
-  single_thick.add_rays();
+  thin.add_heights();
+  single.add_heights();
+  thick.add_heights();
+  single_thick.add_heights();
   thin.add_published();
   single.add_published();
   const auto add_points = [](const auto&... calls) { (calls.add_points(), ...); };
-  const auto add_pixels = [](const auto&... calls) { (calls.add_pixels(), ...); };
   add_points(thin, single, thick, single_thick, heights, single_heights);
-  add_pixels(thin, single, thick, single_thick, heights, single_heights);
   add_all_opencv();
   return bench::run(argc, argv);
 }

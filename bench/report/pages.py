@@ -18,48 +18,40 @@ import plots
 from runs import FLAGS, read
 from tables import number, print_group, size
 
-# {program: (heading, groups with a picture)}
+# {program: heading}
 METHODS = {
-    "depth": ("Depth: inversion", ["full pad, depths up to 14 mm"]),
-    "frame": ("Depth: the whole step", ["round pad"]),
-    "smoothing": ("Depth: averaging", ["two planes"]),
-    "neighbour_light": ("Neighbour light", ["radius 15 px"]),
-    "optics": ("Optics", ["virtual heights", "point"]),
-    "curvature": ("Curvature", ["round pad, radius 10 px"]),
-    "contact_region": ("Contact region", ["350 mm^2"]),
-    "object_surface": ("Object surface", ["rays"]),
-    "object_motion": ("Motion of the object", ["frame of 21x21 dots"]),
-    "stick_ratio": ("Stick ratio", ["frame of 21x21 dots"]),
-    "spatial_stick_ratio": ("Stick ratio in space", []),
-    "gel_slide": ("Gel slide", []),
-    "grip_control": ("Grip control", ["closed loop"]),
-    "wrench": ("Six axes from dots in the picture", ["frame of 250 dots"]),
-    "traction": ("Traction", ["frame of 21x21 dots"]),
-    "normal_force": ("Normal force", ["one frame, double"]),
-    "contact_shift": ("Shift of the contact", ["noise only", "stuck dots"]),
-    "shear": ("Tangential force and moment", ["4096 contacts"]),
-    "taxel_features": ("Taxel features", ["vibrating, window 16"]),
-    "preslip": ("Pre-slip", ["detection"]),
-    "dot_finder": ("Printed dots", ["21x21 dots, radius 4.4 px"]),
-    "foam_contact": ("Foam contact", ["steps", "lift, 2000 steps"]),
-    "calibrations": ("Calibrations", []),
+    "depth": "Depth: inversion",
+    "frame": "Depth: the whole step",
+    "smoothing": "Depth: averaging",
+    "neighbour_light": "Neighbour light",
+    "optics": "Optics",
+    "curvature": "Curvature",
+    "contact_region": "Contact region",
+    "object_surface": "Object surface",
+    "object_motion": "Motion of the object",
+    "stick_ratio": "Stick ratio",
+    "spatial_stick_ratio": "Stick ratio in space",
+    "gel_slide": "Gel slide",
+    "grip_control": "Grip control",
+    "wrench": "Six axes from dots in the picture",
+    "traction": "Traction",
+    "normal_force": "Normal force",
+    "contact_shift": "Shift of the contact",
+    "shear": "Tangential force and moment",
+    "taxel_features": "Taxel features",
+    "preslip": "Pre-slip",
+    "dot_finder": "Printed dots",
+    "foam_contact": "Foam contact",
+    "calibrations": "Calibrations",
 }
 # {program: what its tables do not say themselves}
 NOTES = {
-    "neighbour_light": """The disc is summed exactly, row by row, so that the time grows with its radius. At full
-resolution and 30 px that takes three times as long as the five rectangles which stood for the disc at commit
-ec8bb89. `Fingertip` takes the light off samples of 3 x 3 pixels.""",
     "spatial_stick_ratio": """"On scenes": ten finite-element scenes, six times each; the limit is that of
 dragged plates, as a share of the coefficient of friction.""",
     "calibrations": """Times are those of a fit. "A sensor of numbers": errors of each parameter over 100 fits
 with fresh noise ([what each is](calibrate/calibration.md#the-covariance-tried)). "On scenes": errors of the
 method, on finite-element scenes that were left out of the fit.""",
 }
-# Groups that say at another size what one beside them says: `bench/report/run NAME` prints them.
-LEFT_OUT = {"full pad, depths up to 18 mm", "full pad, two planes of 16 bit", "full pad, BGR", "radius 5 px",
-            "radius 50 px", "full pad, radius 25 px", "round pad, radius 25 px", "110 mm^2, heights", "heights",
-            "growth", "one frame, float", "vibrating, window 64", "lift, 400 steps", "lift, 4000 steps",
-            "8x10 dots, radius 9 px"}
 # The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
     ("depth of a pixel, rendered", "depth", "full pad, depths up to 14 mm", "published bisection, double",
@@ -99,18 +91,11 @@ def write_methods(build, docs, about):
     pictures.mkdir(exist_ok=True)
     runs = {program: read({f: build / f"{program}_{f}.json" for f in FLAGS}) for program in METHODS}
     body = io.StringIO()
-    for program, (title, plotted) in METHODS.items():
+    for program, title in METHODS.items():
         body.write(f"\n## {title}\n")
         if program in NOTES:
             body.write(f"\n{NOTES[program]}\n")
         for group, rows in runs[program].items():
-            if group in LEFT_OUT or re.match("Grasp.*(quiet|1000$)", group):
-                continue
-            if group in plotted:
-                k = plotted.index(group)
-                name = f"{program}_{k + 1}.png" if k else f"{program}.png"
-                plots.pareto(f"{title}: {group}", rows, pictures / name)
-                body.write(f"\n![{title}, {group}: time against error](speed_and_error/{name})\n")
             print_group(group, rows, body)
     overview = [(label, runs[program][group][published], runs[program][group][ours])
                 for label, program, group, published, ours in COMPARED]

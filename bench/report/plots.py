@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
 """The report's pictures."""
-import math
 import re
 
 import matplotlib
@@ -11,17 +10,16 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import LogFormatterSciNotation  # noqa: E402
 from PIL import Image  # noqa: E402
 
-from runs import is_on_scenes, main_quantity  # noqa: E402
+from runs import is_on_scenes  # noqa: E402
 
-PUBLISHED, OURS, PALE, YARDSTICK = "#c0392b", "#1f4e79", "#9db8d2", "#7f8c8d"
+OURS, YARDSTICK = "#1f4e79", "#7f8c8d"
 plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
                      "axes.grid": True, "grid.alpha": 0.25, "figure.dpi": 110})
 
 
-def save(figure, path, crop=None):
-    if crop is None:
-        figure.tight_layout()
-    figure.savefig(path, bbox_inches=crop)
+def save(figure, path):
+    figure.tight_layout()
+    figure.savefig(path)
     plt.close(figure)
     with Image.open(path) as drawn:  # lines and letters need few colours
         drawn.convert("RGB").quantize(48, dither=Image.Dither.NONE).save(path, optimize=True)
@@ -32,78 +30,6 @@ def logarithmic(axis, name):
     axis.axes.set(**{f"{name}scale": "log"})
     axis.set_minor_formatter(LogFormatterSciNotation(labelOnlyBase=False, minor_thresholds=(1.5, 0.6)))
     axis.set_tick_params(which="minor", labelsize=7)
-
-
-def front(points):
-    """Points that no other beats in both time and error."""
-    best, kept = math.inf, []
-    for point in sorted(points):
-        if point[1] < best:
-            best = point[1]
-            kept.append(point)
-    return kept
-
-
-def number_points(axes, points, others, colours):
-    """Numbers beside `points`, each in the nearest free place; with a line if that is far."""
-    dots_per_point = axes.figure.dpi / 72
-    place = lambda point: axes.transData.transform(point) / dots_per_point
-    taken = [place(p) for p in points + others]
-    around = [(r * math.cos(a), r * math.sin(a)) for r in (9, 14, 20, 27, 35, 44)
-              for a in [math.radians(135 + 30 * k) for k in range(12)]]
-    for k, (point, colour) in enumerate(zip(points, colours), 1):
-        at = place(point)
-        room = lambda d: min(math.dist(at + d, other) for other in taken)
-        offset = next((d for d in around if room(d) >= 8.5), max(around, key=room))
-        taken.append(at + offset)
-        line = {"arrowstyle": "-", "lw": 0.5, "color": colour, "shrinkA": 0, "shrinkB": 3}
-        axes.annotate(str(k), point, xytext=offset, textcoords="offset points", ha="center",
-                      va="center", fontsize=8, color=colour,
-                      arrowprops=line if math.hypot(*offset) > 15 else None)
-
-
-def pareto(title, rows, path):
-    """Time against error of every method that has an error."""
-    rows = list(rows.values())
-    quantity, error = main_quantity(rows)
-    # a method that rarely answers is easily right
-    ways = [r for r in rows if quantity in r.errors and not r.is_yardstick
-            and r.found.get(quantity, 1) >= 0.2]
-    positive = [r.errors[quantity].high for r in ways if r.errors[quantity].high > 0]
-    floor = min(positive, default=1) / 3
-    figure, axes = plt.subplots(figsize=(10, max(3.6, 0.23 * len(rows) + 1.2)))
-    points, hollow, names = [], [], []
-    for k, row in enumerate(ways, 1):
-        y = max(row.errors[quantity].high, floor)
-        native, o2 = row.median("native"), row.median("o2")
-        colour = PUBLISHED if row.is_published else OURS
-        axes.plot([native, o2], [y, y], color=PALE, lw=1, zorder=1)
-        axes.plot(o2, y, "o", mfc="white", mec=colour, ms=6, zorder=2)
-        axes.plot(native, y, "*" if row.is_published else "o", color=colour,
-                  ms=16 if row.is_published else 7, zorder=3)
-        points.append((native, y))
-        hollow.append((o2, y))
-        names.append((f"{k}  {row.name}", colour))
-    axes.plot(*zip(*front(points)), color=OURS, lw=1, ls=":", zorder=0, drawstyle="steps-post")
-    for row in rows:
-        if row.is_yardstick:
-            axes.axvline(row.median("native"), color=YARDSTICK, lw=1, ls="--", zorder=0)
-            axes.text(row.median("native"), 1.0, " " + row.name.split(",")[0], rotation=90, va="top",
-                      ha="right", fontsize=7, color=YARDSTICK, transform=axes.get_xaxis_transform())
-    logarithmic(axes.xaxis, "x")
-    logarithmic(axes.yaxis, "y")
-    axes.margins(y=0.1)
-    exact = ", lowest: 0" if len(positive) < len(ways) else ""
-    axes.set_xlabel("time, s (filled: -O3 -march=native, hollow: -O2; star: as published)")
-    by_law = "" if is_on_scenes(quantity) else "\n(synthetic truth)"
-    axes.set_ylabel(f"99th percentile of the error of\n{quantity}, {error.unit}{exact}{by_law}")
-    axes.set_title(title, loc="left", weight="bold")
-    for k, (name, colour) in enumerate(names):
-        axes.text(1.02, 1 - (k + 0.5) / max(len(names), 12), name, transform=axes.transAxes,
-                  fontsize=8, va="center", color=colour)
-    figure.subplots_adjust(right=0.6)
-    number_points(axes, points, hollow, [colour for _, colour in names])
-    save(figure, path, "tight")
 
 
 def peers(tables, path):

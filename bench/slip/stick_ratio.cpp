@@ -163,18 +163,6 @@ void add_opencv() {
       [](auto&) {});
 }
 
-void add_growth() {
-  static const Recording small(11, 11, 0.6), large(41, 41, 0.6), slow(21, 21, 0.05);
-  const auto grow = [](const char* what, const Recording& input) {
-    const Index dots = input.contact.rows();
-    add(std::string("growth/") + what, input, StickRatio<>(dots, dots), StickOptions().slip_share);
-  };
-  grow("21x21 dots, 64 stored frames", recording());
-  grow("11x11 dots", small);
-  grow("41x41 dots", large);
-  grow("moving by 0.05 px a frame", slow);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -188,6 +176,5 @@ int main(int argc, char** argv) {
   add_frame<float>("float");
   add_opencv();
   bench::add_streaming("frame of 21x21 dots");
-  add_growth();
   return bench::run(argc, argv);
 }

@@ -24,7 +24,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-TRACED = ["papers.md"]
+TRACED = ["detection_limits.md", "faq.md", "force/shear.md", "on_a_robot.md", "optics/optics.md", "papers.md", "peers.md",
+          "pipeline/fingertip.md", "pipeline/foam_hand.md", "results.md", "your_sensor.md"]
 NUMBER = r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
 MARK = re.compile(rf"({NUMBER}(?: / {NUMBER})*)((?: ?%)?)[^\d\n<>]{{0,12}}<!-- ([\w/]+\.md)(#[\w-]+)?: ([^:]+): ([^:]+?) -->")
 UNIT = re.compile(rf"(?<![\w.^-])({NUMBER}) ?(?:%|mm\b|px\b|N\b|N/mm|MPa|kPa|Hz|ms|us|degrees?\b|times\b)")

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The fingerpad authors
 # SPDX-License-Identifier: MIT
 """live.py REPLAY RECORDING: replays a recorded video instead of a camera in a window on a separate
-screen (Xvfb). Below the title, the window must show what --headless writes."""
+screen (Xvfb). Below the title, the window must show what --headless writes; the key r records."""
+import ctypes
 import os
 import shutil
 import subprocess
@@ -41,10 +42,22 @@ def differing(picture, screen):
     return (picture[TITLE:] != screen[TITLE:rows, :cols]).any(axis=2).sum()
 
 
+def press(key, display):
+    """Presses and releases a key on the window under the pointer, the middle of the screen."""
+    x11, test = ctypes.CDLL("libX11.so.6"), ctypes.CDLL("libXtst.so.6")
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    screen = ctypes.c_void_p(x11.XOpenDisplay(display.encode()))
+    code = x11.XKeysymToKeycode(screen, ctypes.c_ulong(ord(key)))
+    for down in (1, 0):
+        test.XTestFakeKeyEvent(screen, code, down, 0)
+    x11.XSync(screen, 0)
+    x11.XCloseDisplay(screen)
+
+
 def run(replay, recording, work):
     video = work / "video.pngs"  # a sequence of images: lossless
     frames = [f.read_bytes() for f in sorted((recording / "frames").iterdir())]
-    video.write_bytes(b"".join(frames * 4))
+    video.write_bytes(b"".join(frames * 8))
     command = [replay, recording, "--video", video]
 
     no_screen = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
@@ -74,18 +87,24 @@ def run(replay, recording, work):
     try:
         os.close(told)
         display = ":" + os.read(ready, 16).decode().strip()
-        shown = subprocess.Popen(command, env={**no_screen, "DISPLAY": display},
+        keyed = [*command, "--record", work / "keyed"]
+        shown = subprocess.Popen(keyed, env={**no_screen, "DISPLAY": display},
                                  stdout=subprocess.PIPE, text=True)
         seen, best = 0, written[0].size
         while shown.poll() is None:
             screen = screen_of(work / "Xvfb_screen0")
             if screen is not None and np.count_nonzero(screen) > written[0].size // 2:
+                if seen == 0:
+                    press("r", display)
                 seen += 1
                 best = min(best, *(differing(picture, screen) for picture in written))
             time.sleep(0.02)
-        print(shown.stdout.read(), f"{seen} looks, {best} pixels differ", sep="")
+        said = shown.stdout.read()
+        print(said, f"{seen} looks, {best} pixels differ", sep="")
         assert shown.returncode == 0
         assert seen > 0 and best < CURSOR
+        recorded = list((work / "keyed" / "001" / "frames").iterdir())
+        assert recorded and f"{work / 'keyed' / '001'}, {len(recorded)} frames" in said
     finally:
         xvfb.terminate()
         xvfb.wait()
