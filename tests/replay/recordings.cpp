@@ -296,7 +296,9 @@ TEST_CASE("files that cannot be used are refused with their name") {
   }
   SECTION("no reference") {
     fs::remove(work.recording() / "reference.png");
-    CHECK(ends_with(work.complaint(), "reference.png: there is no such file"));
+    CHECK(ends_with(work.complaint(),
+                    "reference.png: there is no such file; a picture of the pad with nothing in "
+                    "contact belongs there"));
   }
   SECTION("a reference depth of another size") {
     cv::imwrite((work.recording() / "reference_depth.tiff").string(), cv::Mat1f(9, 9, 1.0F));

@@ -212,7 +212,9 @@ class JsonSection {
 inline nlohmann::json parse_json(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) {
-    fail(file, "cannot be read (every recording has this file; it describes the sensor)");
+    fail(file,
+         "cannot be read (every recording has this file; it describes the sensor; {} for dots "
+         "alone)");
   }
   try {
     return nlohmann::json::parse(stream);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "common/failure.hpp"
 #include "common/images.hpp"
@@ -202,6 +203,14 @@ namespace {
 void read_reference(const fs::path& folder, Recording& recording) {
   const fs::path frame_file = folder / recording.sensor.reference_frame;
   const fs::path depth_file = folder / recording.sensor.reference_depth;
+  for (const auto& [file, what] :
+       {std::pair{frame_file, "a picture of the pad with nothing in contact belongs there"},
+        std::pair{depth_file,
+                  "the depth of that pad in mm belongs there, which calibrate shape writes"}}) {
+    if (!fs::exists(file)) {
+      fail(file, std::string("there is no such file; ") + what);
+    }
+  }
   recording.reference = read_colour_image(frame_file, recording.sensor.pictures);
   recording.reference_depth = read_depth_image(depth_file);
   if (recording.reference_depth.size() != recording.reference.size()) {
