@@ -157,13 +157,3 @@ TEST_CASE("the angle between rotations", "[math]") {
     RC_ASSERT(std::abs(angle_between(a * c, b * c) - angle_between(a, b)) < 1e-7);
   });
 }
-
-TEST_CASE("roundoff of long products is taken out", "[math]") {
-  Rotation<double> step = rotation_of(Angles<double>{0.1, -0.2, 0.3}), plain, kept;
-  for (int k = 0; k < 1000000; ++k) {
-    plain = step * plain;
-    kept = detail::motion::renormalized(step * kept);
-  }
-  CHECK(difference(inverse(kept) * kept, Rotation<double>{}) < 8 * eps);
-  CHECK(difference(inverse(plain) * plain, Rotation<double>{}) > 100 * eps);
-}

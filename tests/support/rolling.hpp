@@ -88,7 +88,6 @@ class Rolling {
     const Point3<double> next{x_mm, y_mm, ball_.depth_mm + ball_.radius_mm};
     const Pose<double> motion{turn, next - turn(center)};
     pose = motion * pose;
-    pose.rotation = detail::motion::renormalized(pose.rotation);
     x_ = x_mm;
     y_ = y_mm;
     touch();

@@ -121,21 +121,5 @@ S angle_between(const Rotation<S>& a, const Rotation<S>& b) {
   return atan2(norm(twice_sine), d.m[0][0] + d.m[1][1] + d.m[2][2] - S(1));
 }
 
-namespace detail::motion {
-/// One Newton step toward the nearest rotation: R (3 - R^T R) / 2. Removes the roundoff of long
-/// products; the matrix must be a rotation up to roundoff.
-template <scalar S>
-Rotation<S> renormalized(const Rotation<S>& r) {
-  const Rotation<S> square = inverse(r) * r;
-  Rotation<S> factor;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      factor.m[i][j] = ((i == j ? S(3) : S(0)) - square.m[i][j]) / S(2);
-    }
-  }
-  return r * factor;
-}
-}  // namespace detail::motion
-
 }  // namespace v1
 }  // namespace fingerpad
