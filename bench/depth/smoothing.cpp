@@ -66,10 +66,9 @@ struct Bench {
         scene.pad.camera, scene.pad.fluid, reference,
         detail::PadArea{0, 0, scene.pad.rows, scene.pad.cols}, window_px, 1);
     const auto work = [=, r = as_view(red), g = as_view(green)](bench::Frame<S>& smooth) {
-      const GreyScale scale = grey_scale_of<cell_t<Red>>();
-      rows->start(r, g, scale);
+      rows->start(r, g);
       for (Index i = 0; i < r.rows(); ++i) {  // 640 columns are whole blocks of 64
-        rows->next(r, g, scale, &smooth.red(i, 0), &smooth.green(i, 0));
+        rows->next(r, g, &smooth.red(i, 0), &smooth.green(i, 0));
       }
     };
     add<S>(name, work, memory);

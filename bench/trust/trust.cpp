@@ -302,10 +302,8 @@ struct Pad {
     camera.pitch_mm *= shrink;
     camera.center_x_px = (camera.center_x_px - shift) / shrink;
     camera.center_y_px = (camera.center_y_px - shift) / shrink + of.center_px / shrink;
-    const GreyScale scale = grey_scale_of<std::uint16_t>();
     options.emplace(FingertipOptions{
-        camera, frames.fluid,
-        fit_reference(camera, frames.fluid, free.red, free.green, shape_mm, scale)});
+        camera, frames.fluid, fit_reference(camera, frames.fluid, free.red, free.green, shape_mm)});
     FingertipOptions& o = *options;
     const bool small = scene["base_mm"] < 15;
     const auto odd = [](double px) { return 2 * static_cast<int>(px / 2) + 1; };

@@ -324,25 +324,6 @@ TEST_CASE("no pixel of a frame goes into the next frame's light", "[mistakes]") 
   CHECK(test::same_bits(out, fresh));
 }
 
-TEST_CASE("12-bit pixels above their scale are left out, whatever the width", "[mistakes]") {
-  const Pad pad;
-  const GreyScale scale{16, 0, 255 * 16};
-  const auto depth = pad.pressed_depths(2);
-  const auto levels = pad.frame<double>(depth, 1, 4);
-  test::Frame<std::uint16_t> frame(pad.rows, pad.cols), other(pad.rows, pad.cols);
-  for (std::size_t k = 0; k < frame.red.cells.size(); ++k) {
-    const bool wild = k % 7 == 0;
-    frame.red.cells[k] = static_cast<std::uint16_t>(levels.red.cells[k] * 16);
-    frame.green.cells[k] = wild ? 65535 : static_cast<std::uint16_t>(levels.green.cells[k] * 16);
-    other.red.cells[k] = frame.red.cells[k];
-    other.green.cells[k] = wild ? 4080 : frame.green.cells[k];
-  }
-  auto estimator = pad.estimator<float>({.window_px = 5, .scale = scale});
-  const auto seen = test::estimate(estimator, frame);
-  CHECK(test::same_bits(seen.depth_mm, test::estimate(estimator, other).depth_mm));
-  CHECK(seen.result.valid_pixels() > 1000);
-}
-
 TEST_CASE("wild finite depths move no contact and make no negative area", "[mistakes]") {
   const auto check = [](const auto& camera) {
     const auto depth = test::depths_of<float>(camera, test::RoundFilm({}), 60, 64);

@@ -158,8 +158,7 @@ TEST_CASE("a finger of one's own: depth from pictures under an uneven lamp", "[o
   const cv::Mat free = replay::read_colour_image(folder / "reference.png");
   const auto reference = fingerpad::fit_reference(
       sensor.camera, sensor.absorption, fingerpad::channel<std::uint16_t>(free, 2),
-      fingerpad::channel<std::uint16_t>(free, 1), known_mm,
-      fingerpad::grey_scale_of<std::uint16_t>(), &*sensor.light);
+      fingerpad::channel<std::uint16_t>(free, 1), known_mm, &*sensor.light);
   fingerpad::DepthEstimator<float> estimate(sensor.camera, sensor.absorption, reference,
                                             {.window_px = 1});
   test::Random random(9);

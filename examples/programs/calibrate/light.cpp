@@ -176,8 +176,7 @@ auto reference_of(const replay::Sensor& sensor, const cv::Mat& picture, const De
   const cv::Mat wide = in_16_bit(picture);
   return fingerpad::fit_reference(
       sensor.camera, sensor.absorption, fingerpad::channel<std::uint16_t>(wide, 2),
-      fingerpad::channel<std::uint16_t>(wide, 1), free_mm,
-      fingerpad::grey_scale_of<std::uint16_t>(), sensor.light ? &*sensor.light : nullptr);
+      fingerpad::channel<std::uint16_t>(wide, 1), free_mm, sensor.light ? &*sensor.light : nullptr);
 }
 
 /// Measures the depth of frames with the sensor as calibrated so far.

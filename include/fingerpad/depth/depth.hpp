@@ -17,7 +17,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -37,15 +36,13 @@ struct DepthOptions {
   int window_px = 29;  ///< width of the smoothing window, odd, 3..109 step; 1: no smoothing, for
                        ///< frames without noise
   int step = 1;        ///< pixels from one sample to the next, for sampled frames, 1..16
-  std::optional<GreyScale> scale = {};  ///< empty: grey_scale_of the frame's cells
 };
 
 /// Says which value is out of range; "" if none is.
 inline std::string check(const DepthOptions& options) {
-  const std::string refusal =
-      check("DepthOptions", {{"step", options.step, within(1, 16)},
-                             {"window_px", options.window_px, odd_within(1, 109 * options.step)}});
-  return refusal.empty() && options.scale ? check(*options.scale) : refusal;
+  return check("DepthOptions",
+               {{"step", options.step, within(1, 16)},
+                {"window_px", options.window_px, odd_within(1, 109 * options.step)}});
 }
 
 /// The outcome of a frame. not_of_this_pad: depths were written, but the rim of the pad is more
@@ -74,7 +71,6 @@ class DepthEstimator {
       : rows_(reference.rows),
         cols_(reference.cols),
         pad_(checked_area(camera, fluid, reference, options)),
-        scale_(options.scale),
         colours_(camera, fluid, reference, pad_, options.window_px, options.step),
         solver_(camera, fluid, radius_px(camera, reference) + 1, least_g(reference)),
         rim_(reference),
@@ -123,25 +119,24 @@ class DepthEstimator {
     if (!(has_size(red) && has_size(green) && has_size(depth_mm) && has_size(status))) {
       return result;
     }
-    const GreyScale scale = scale_ ? *scale_ : grey_scale_of<cell_t<Red>>();
     const auto from_red = as_view(red);
     const auto from_green = as_view(green);
     const auto to_depth = as_view(depth_mm);
     result.pad_pixels = pad_pixels_;
     const auto pad_red = detail::crop(from_red, pad_);
     const auto pad_green = detail::crop(from_green, pad_);
-    colours_.start(pad_red, pad_green, scale);
+    colours_.start(pad_red, pad_green);
     for (Index i = 0; i < rows_; ++i) {
       if (i >= pad_.row && i < pad_.row + pad_.rows) {
-        colours_.next(pad_red, pad_green, scale, red_.data() + pad_.col, green_.data() + pad_.col);
+        colours_.next(pad_red, pad_green, red_.data() + pad_.col, green_.data() + pad_.col);
       }
-      invert(i, from_red, from_green, scale, result.count);
+      invert(i, from_red, from_green, result.count);
       detail::store_row(depth_.data(), to_depth, i);
       if constexpr (has_status) {
         detail::store_row(status_.data(), as_view(status), i);
       }
     }
-    result.status = rim_.has_changed(from_red, from_green, scale, light_.green)
+    result.status = rim_.has_changed(from_red, from_green, light_.green)
                         ? FrameStatus::not_of_this_pad
                         : FrameStatus::ok;
     return result;
@@ -208,7 +203,6 @@ class DepthEstimator {
   void invert(Index row,
               const Red& red,
               const Green& green,
-              const GreyScale& scale,
               std::array<Index, pixel_status_count>& count) {
     const auto [begin, end] = span_[static_cast<std::size_t>(row)];
     count[static_cast<std::size_t>(PixelStatus::outside_pad)] += cols_ - (end - begin);
@@ -226,7 +220,7 @@ class DepthEstimator {
       }
       for (Index i = 0; i < n; ++i) {
         if (status[i] == PixelStatus::not_a_number) {
-          status[i] = without_colour(red(row, j + i), green(row, j + i), scale);
+          status[i] = without_colour(red(row, j + i), green(row, j + i));
         }
         ++count[static_cast<std::size_t>(status[i])];
       }
@@ -245,7 +239,8 @@ class DepthEstimator {
 
   /// Why a pixel has no mean colour, judged by its own channels.
   template <class Cell>
-  static PixelStatus without_colour(const Cell& red, const Cell& green, const GreyScale& scale) {
+  static PixelStatus without_colour(const Cell& red, const Cell& green) {
+    constexpr GreyScale scale = grey_scale_of<Cell>();
     const auto r = static_cast<double>(red), g = static_cast<double>(green);
     if (!is_finite(r) || !is_finite(g)) {
       return PixelStatus::not_a_number;
@@ -260,7 +255,6 @@ class DepthEstimator {
   Index rows_;
   Index cols_;
   detail::PadArea pad_;
-  std::optional<GreyScale> scale_;
   LightGains light_;
   detail::ColourRows<S> colours_;
   detail::DepthPolynomial<S> solver_;

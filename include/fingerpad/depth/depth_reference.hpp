@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -21,7 +20,8 @@ namespace fingerpad {
 inline namespace v1 {
 
 /// Relation of stored intensities to grey levels 0..255, and the limits beyond which they carry no
-/// information. A pixel counts only if both its channels lie strictly between the two limits.
+/// information. A pixel counts only if both its channels lie strictly between the two limits. Bits
+/// of a 10- or 12-bit camera must be shifted to the top of 16.
 struct GreyScale {
   double units_per_level = 1;  ///< stored units in one grey level: 1 for 8 bit, 256 for 16 bit
   double dark = 0;             ///< in stored units
@@ -33,14 +33,6 @@ struct GreyScale {
     return value(x) > scalar_real_t<S>(dark) && value(x) < scalar_real_t<S>(saturated);
   }
 };
-
-/// Says which value is out of range; "" if none is. A scale has at most the levels of 8 bit.
-inline std::string check(const GreyScale& scale) {
-  const Range in_levels{.min = scale.dark, .max = 256 * scale.units_per_level, .above_min = true};
-  return check("GreyScale", {{"units_per_level", scale.units_per_level, positive},
-                             {"dark", scale.dark, finite_number},
-                             {"saturated", scale.saturated, in_levels}});
-}
 
 /// The scale of a cell type: 16-bit images hold 256 times the grey level, all others the grey
 /// level.
@@ -167,10 +159,8 @@ class Rim {
   /// `expected`, or mostly dark or saturated. Displaced printed dots change the light by 1 % with a
   /// thousand samples and by 4 % with 64; fewer tell nothing.
   template <class Red, class Green>
-  bool has_changed(const Red& red,
-                   const Green& green,
-                   const GreyScale& scale,
-                   double expected) const {
+  bool has_changed(const Red& red, const Green& green, double expected) const {
+    constexpr GreyScale scale = grey_scale_of<cell_t<Red>>();
     double used = 0, sum = 0;
     for (const auto& [row, col] : pixels_) {
       const auto g = static_cast<double>(green(row, col));

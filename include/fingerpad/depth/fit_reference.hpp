@@ -87,10 +87,10 @@ std::vector<FreeBlock<C>> free_blocks(const Camera<C>& camera,
                                       const Red& red,
                                       const Green& green,
                                       const Depth& depth_mm,
-                                      const GreyScale& scale,
                                       Index width,
                                       const C& scale_mm) {
   using std::exp;
+  constexpr GreyScale scale = grey_scale_of<cell_t<Red>>();
   std::vector<FreeBlock<C>> blocks;
   const C delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
   const auto in_pad = [&](Index i, Index j) {
@@ -306,15 +306,14 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
                                 const Red& red,
                                 const Green& green,
                                 const Depth& depth_mm,
-                                const GreyScale& scale = grey_scale_of<cell_t<Red>>(),
                                 const PadLight<C>* known = nullptr) {
   using std::sqrt;
+  constexpr GreyScale scale = grey_scale_of<cell_t<Red>>();
   const auto reds = as_view(red);
   const auto greens = as_view(green);
   const auto depths = as_view(depth_mm);
   require(camera);
   require(fluid);
-  require(scale);
   expects(same_size(reds, greens) && same_size(reds, depths), "fit_reference", "rows of depth_mm",
           static_cast<long long>(depths.rows()), "of the same size as the red and green image");
   DepthReference<S> reference;
@@ -343,7 +342,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
     }
   });
   const Index width = detail::block_width(shape.pixels);
-  auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, scale, width, scale_mm);
+  auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, width, scale_mm);
   const PadLight<C> light = known != nullptr ? *known : detail::fit_light(blocks, scale_mm);
   if (known != nullptr) {
     expects(!blocks.empty(), "fit_reference", "blocks of pixels with a known depth", 0, ">= 1");

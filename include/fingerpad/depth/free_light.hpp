@@ -62,17 +62,14 @@ class FreeLight {
   /// Empty if the frame has another size, if fewer than 50 blocks carry information, or if the
   /// light has changed by more than a half.
   template <grid Red, grid Green>
-  std::optional<FreeLightResult> operator()(
-      const Red& red,
-      const Green& green,
-      const GreyScale& scale = grey_scale_of<cell_t<Red>>()) const {
+  std::optional<FreeLightResult> operator()(const Red& red, const Green& green) const {
     if (fingerpad::rows(red) != rows_ || fingerpad::cols(red) != cols_ ||
         fingerpad::rows(green) != rows_ || fingerpad::cols(green) != cols_) {
       return std::nullopt;
     }
     const auto reds = as_view(red);
     const auto greens = as_view(green);
-    return fitted([&](const Block& b) { return seen(b, reds, greens, scale); });
+    return fitted([&](const Block& b) { return seen(b, reds, greens); });
   }
 
  private:
@@ -122,7 +119,8 @@ class FreeLight {
   }
 
   template <class View>
-  Seen seen(const Block& b, const View& red, const View& green, const GreyScale& scale) const {
+  Seen seen(const Block& b, const View& red, const View& green) const {
+    constexpr GreyScale scale = grey_scale_of<cell_t<View>>();
     double reds = 0, greens = 0, count = 0;
     for (Index i = b.row; i < b.row + width_; ++i) {
       for (Index j = b.col; j < b.col + width_; ++j) {

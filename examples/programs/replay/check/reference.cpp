@@ -224,7 +224,7 @@ void check_fit(const Recording& recording, Findings& findings) {
     (void)fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption,
                                    fingerpad::channel<Pixel>(recording.reference, 2),
                                    fingerpad::channel<Pixel>(recording.reference, 1),
-                                   recording.reference_depth, fingerpad::grey_scale_of<Pixel>(),
+                                   recording.reference_depth,
                                    recording.sensor.light ? &*recording.sensor.light : nullptr);
   };
   try {

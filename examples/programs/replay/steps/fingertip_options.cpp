@@ -22,7 +22,6 @@ fingerpad::DepthReference<float> reference_of(const Recording& recording) {
   return with_colors(recording.reference, [&](const auto& red, const auto& green) {
     return fingerpad::fit_reference(recording.sensor.camera, recording.sensor.absorption, red,
                                     green, recording.reference_depth,
-                                    fingerpad::grey_scale_of<fingerpad::cell_t<decltype(red)>>(),
                                     recording.sensor.light ? &*recording.sensor.light : nullptr);
   });
 }

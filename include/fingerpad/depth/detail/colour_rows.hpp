@@ -146,27 +146,27 @@ class ColourRows {
 
   /// Begins with the first row of a frame.
   template <class Red, class Green>
-  void start(const Red& red, const Green& green, const GreyScale& scale) {
+  void start(const Red& red, const Green& green) {
     row_ = 0;
     if (wide_means_) {
-      means<element_t<cell_t<Red>>>().start(source(red, green, scale));
+      means<element_t<cell_t<Red>>>().start(source(red, green));
     }
   }
 
   /// Writes the next row, in memory for whole blocks of 64. Red is multiplied by the pixel's gain.
   template <class Red, class Green>
-  void next(const Red& red, const Green& green, const GreyScale& scale, S* to_red, S* to_green) {
+  void next(const Red& red, const Green& green, S* to_red, S* to_green) {
     using Element = element_t<cell_t<Red>>;
     const Index row = row_++;
     if (!wide_means_) {
       std::uint32_t counts[block];
       each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
-        mark(r, g, per_g(row) + j, scale, counts);
-        single(r, g, gain(row) + j, counts, levels(scale), to_red + j, to_green + j);
+        mark(r, g, per_g(row) + j, counts);
+        single(r, g, gain(row) + j, counts, levels<cell_t<Red>>(), to_red + j, to_green + j);
       });
       return;
     }
-    means<Element>().advance(source(red, green, scale), inner_red_.data(), inner_green_.data(),
+    means<Element>().advance(source(red, green), inner_red_.data(), inner_green_.data(),
                              outer_red_.data());
     for (Index j = 0; j < cols_; j += block) {
       finish<Element>(row, j, to_red + j, to_green + j);
@@ -212,8 +212,9 @@ class ColourRows {
     }
   }
   /// Grey levels of a stored unit of red and of green, in the light of the reference.
-  std::array<S, 2> levels(const GreyScale& scale) const {
-    const S level = S(1 / scale.units_per_level);
+  template <class Cell>
+  std::array<S, 2> levels() const {
+    const S level = S(1 / grey_scale_of<Cell>().units_per_level);
     return {level * red_level_, level * green_level_};
   }
   const S* gain(Index row) const {
@@ -236,11 +237,11 @@ class ColourRows {
 
   /// The row source of the window means: residuals and green of a row, and which pixels count.
   template <class Red, class Green>
-  auto source(const Red& red, const Green& green, const GreyScale& scale) const {
+  auto source(const Red& red, const Green& green) const {
     return [&, this](Index row, auto* residual, auto* to_green, std::uint32_t* counts) {
       each_block(red, green, row, [&](Index j, const auto* r, const auto* g) {
-        mark(r, g, per_g(row) + j, scale, counts + j);
-        store(row, j, r, g, counts + j, scale, residual + j, to_green + j);
+        mark(r, g, per_g(row) + j, counts + j);
+        store(row, j, r, g, counts + j, residual + j, to_green + j);
       });
     };
   }
@@ -251,14 +252,10 @@ class ColourRows {
   [[gnu::noinline]] static void mark(const Pixel* red,
                                      const Pixel* green,
                                      const S* per_g,
-                                     const GreyScale& scale,
                                      std::uint32_t* __restrict counts) {
     using Number = std::conditional_t<is_short<Pixel>, std::int32_t, S>;
-    const auto limit = [](double whole, double any) {
-      return is_short<Pixel> ? Number((std::clamp)(whole, -1.0, 65536.0)) : Number(any);
-    };
-    const Number dark = limit(std::floor(scale.dark), scale.dark);
-    const Number saturated = limit(std::ceil(scale.saturated), scale.saturated);
+    constexpr GreyScale scale = grey_scale_of<Pixel>();
+    const Number dark = Number(scale.dark), saturated = Number(scale.saturated);
     for (Index i = 0; i < block; ++i) {
       const Number r = Number(red[i]), g = Number(green[i]);
       counts[i] = std::uint32_t(int(per_g[i] > S(0)) & int(r > dark) & int(r < saturated) &
@@ -288,13 +285,12 @@ class ColourRows {
                                const Pixel* red,
                                const Pixel* green,
                                const std::uint32_t* counts,
-                               const GreyScale& scale,
                                Element* __restrict residual,
                                Element* __restrict to_green) const {
     const S* rise = rise_.data() + row * cols_ + col;
     const S* scattered = scattered_.data() + row * cols_ + col;
     const S* gain = this->gain(row) + col;
-    const std::array<S, 2> level = levels(scale);
+    const std::array<S, 2> level = levels<Pixel>();
     const S green_level = level[1], kappa = kappa_ * level[0];
     const auto whole = [](S x) __attribute__((always_inline)) {  // NaN: the lowest
       x = x > low<Element> ? x : low<Element>;
