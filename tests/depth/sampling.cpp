@@ -28,12 +28,11 @@ template <class Pixel>
 double naive(const Image<Pixel>& of, const Image<Pixel>& beside, Index i, Index j, int step) {
   const double top = grey_scale_of<Pixel>().saturated;
   double sum = 0, count = 0;
-  bool saturated = false, no_number = false;
+  bool saturated = false;
   for (Index r = i * step; r < (i + 1) * step; ++r) {
     for (Index c = j * step; c < (j + 1) * step; ++c) {
       const auto x = static_cast<double>(of(r, c)), y = static_cast<double>(beside(r, c));
       saturated = saturated || x >= top || y >= top;
-      no_number = no_number || x != x || y != y;
       if (x > 0 && y > 0 && x < top && y < top) {
         sum += x;
         count += 1;
@@ -41,8 +40,7 @@ double naive(const Image<Pixel>& of, const Image<Pixel>& beside, Index i, Index 
     }
   }
   const double units = std::is_same_v<Pixel, std::uint8_t> ? 256 : 1;
-  const double none = no_number && !std::is_integral_v<Pixel> ? test::nan : 0;
-  return count > 0 ? sum / count * units : saturated ? top * units : none;
+  return count > 0 ? sum / count * units : saturated ? top * units : 0;
 }
 
 /// Mostly grey, with invalid pixels of each kind, in patches and alone.
@@ -54,10 +52,7 @@ Image<Pixel> any_channel(Index rows, Index cols) {
   for (Pixel& x : image.cells) {
     const auto kind = test::whole(0, 99);
     const double grey = test::uniform(0.004, 0.996) * top;
-    const double bad = kind % 3 == 0                                ? 0.0
-                       : kind % 3 == 1 || std::is_integral_v<Pixel> ? top
-                                                                    : test::nan;
-    x = static_cast<Pixel>(kind < bad_percent ? bad : grey);
+    x = static_cast<Pixel>(kind >= bad_percent ? grey : kind % 3 == 0 ? 0.0 : top);
   }
   const Index dark_from = test::whole(0, cols), dark_to = test::whole(0, cols);
   for (Index i = 0; i < rows; ++i) {
@@ -70,7 +65,7 @@ Image<Pixel> any_channel(Index rows, Index cols) {
 
 template <class Pixel>
 auto samples_of(const Image<Pixel>& red, const Image<Pixel>& green, int step) {
-  const Image<sample_t<Pixel>> samples(red.rows() / step, red.cols() / step);
+  const Image<std::uint16_t> samples(red.rows() / step, red.cols() / step);
   std::pair out(samples, samples);
   REQUIRE(sample_frame(red, green, step, as_view(out.first), as_view(out.second)));
   return out;
@@ -81,8 +76,7 @@ auto samples_of(const Image<Pixel>& red, const Image<Pixel>& green, int step) {
 TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
                    "[sampling]",
                    std::uint8_t,
-                   std::uint16_t,
-                   float) {
+                   std::uint16_t) {
   using Pixel = TestType;
   rc::prop("one by one", [] {
     const int step = static_cast<int>(test::whole(1, 6));
@@ -94,8 +88,7 @@ TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
         const double expected[2] = {naive(red, green, i, j, step), naive(green, red, i, j, step)};
         const double found[2] = {static_cast<double>(r(i, j)), static_cast<double>(g(i, j))};
         for (int k = 0; k < 2; ++k) {
-          RC_ASSERT(std::isnan(found[k]) == std::isnan(expected[k]));
-          RC_ASSERT(std::isnan(found[k]) || std::abs(found[k] - expected[k]) <= 0.5);
+          RC_ASSERT(std::abs(found[k] - expected[k]) <= 0.5);
         }
       }
     }
@@ -105,21 +98,14 @@ TEMPLATE_TEST_CASE("samples are the means of what their pixels say",
 TEMPLATE_TEST_CASE("a block has the samples of a million pixels one by one",
                    "[sampling]",
                    std::uint8_t,
-                   std::uint16_t,
-                   float,
-                   double) {
+                   std::uint16_t) {
   using Pixel = TestType;
-  using Sample = sample_t<Pixel>;
-  using Limits = std::numeric_limits<Pixel>;
+  using Sample = std::uint16_t;
   constexpr double top = grey_scale_of<Pixel>().saturated;
   test::Random random(53);
-  const double odd[] = {0, top, top, static_cast<double>((Limits::max)()),
-                        static_cast<double>(Limits::lowest())};
+  const double odd[] = {0, top, static_cast<double>((std::numeric_limits<Pixel>::max)())};
   const auto any = [&] {
-    if (!std::is_integral_v<Pixel> && random.uniform() < 0.02) {
-      return random.uniform() < 0.5 ? Limits::quiet_NaN() : Limits::infinity();
-    }
-    return static_cast<Pixel>(random.uniform() < 0.1 ? odd[random.whole(0, 4)]
+    return static_cast<Pixel>(random.uniform() < 0.1 ? odd[random.whole(0, 2)]
                                                      : random.uniform(0.01, 0.99) * top);
   };
   Image<Pixel> red(400, 500), green(400, 500);
@@ -131,39 +117,27 @@ TEMPLATE_TEST_CASE("a block has the samples of a million pixels one by one",
     }
     const auto [r, g] = samples_of(red, green, step);
     const auto law = [&](const Image<Pixel>& of, Index row, Index col) {
-      Sample sum = Sample(0);
       double whole = 0, count = 0;
       for (Index j = col * step; j < (col + 1) * step; ++j) {
-        Sample column = Sample(0);
         for (Index i = row * step; i < (row + 1) * step; ++i) {
           const auto x = static_cast<double>(red(i, j)), y = static_cast<double>(green(i, j));
           if (x > 0 && y > 0 && x < top && y < top) {
-            column = static_cast<Sample>(column + static_cast<Sample>(of(i, j)));
             whole += static_cast<double>(of(i, j));
             count += 1;
           }
         }
-        sum = static_cast<Sample>(sum + column);
       }
       empty += count == 0 ? 1 : 0;
       if (count == 0) {
         return static_cast<Sample>(naive(red, green, row, col, step));
       }
-      if constexpr (std::is_integral_v<Pixel>) {
-        return static_cast<Sample>(whole / count * (sizeof(Pixel) == 1 ? 256 : 1) + 0.5);
-      } else {
-        return sum / static_cast<Sample>(count);
-      }
+      return static_cast<Sample>(whole / count * (sizeof(Pixel) == 1 ? 256 : 1) + 0.5);
     };
     for (Index i = 0; i < r.rows(); ++i) {
       for (Index j = 0; j < r.cols(); ++j) {
         const Sample expected[] = {law(red, i, j), law(green, i, j)}, found[] = {r(i, j), g(i, j)};
         for (const std::size_t k : {0U, 1U}) {
-          bool same = found[k] == expected[k];
-          if constexpr (!std::is_integral_v<Pixel>) {
-            same = test::within_ulps(found[k], expected[k], 2);
-          }
-          if (!same) {
+          if (found[k] != expected[k]) {
             CAPTURE(step, i, j, k, found[k], expected[k]);
             FAIL("a block differs from its law");
           }
@@ -306,7 +280,12 @@ TEST_CASE("samples of red divided by a gain have the same depth with that gain",
   auto reference = pad.reference<double>();
   auto frame = pad.frame<double>(pad.pressed_depths(3));
   const auto depth_of = [&] {
-    const auto [red, green] = samples_of(frame.red, frame.green, 2);
+    Image<double> red(pad.rows / 2, pad.cols / 2), green = red;
+    for (const auto& [from, to] : {std::pair(&frame.red, &red), {&frame.green, &green}}) {
+      for (Index k = 0; k < 4 * red.rows() * red.cols(); ++k) {
+        (*to)(k / pad.cols / 2, k % pad.cols / 2) += from->cells[static_cast<std::size_t>(k)] / 4;
+      }
+    }
     DepthEstimator<double> estimator(sampled(pad.camera, 2), pad.fluid, sampled(reference, 2),
                                      {.window_px = 5, .step = 2});
     Image<double> depth(red.rows(), red.cols());

@@ -27,10 +27,6 @@
 namespace fingerpad {
 inline namespace v1 {
 
-/// The type in which samples are stored: 16 bit for 8-bit pixels, else the pixel's own type.
-template <class Pixel>
-using sample_t = std::conditional_t<std::same_as<Pixel, std::uint8_t>, std::uint16_t, Pixel>;
-
 /// Where a position in pixels lies in samples, along one axis: pixel 0 is the first of sample 0.
 template <scalar S>
 S sampled_px(const S& px, int step) {
@@ -83,7 +79,6 @@ template <class Pixel, int Step>
 class SampleBlock {
  public:
   static constexpr std::size_t samples = 64;
-  using Sample = sample_t<Pixel>;
 
   explicit SampleBlock(int step) : step_(Step > 0 ? Step : step) {}
 
@@ -91,18 +86,18 @@ class SampleBlock {
   template <class Red, class Green>
   void read(const Red& red, const Green& green, Index row, Index col, Index n) {
     red_ = green_ = {};
-    count_ = why_ = {};
+    count_ = bright_ = {};
     std::array<Pixel, pixels> red_row = {}, green_row = {};
     for (Index k = row; k < row + step(); ++k) {
       load_pixels(red, green, k, col, n, red_row.data(), green_row.data());
       for (std::size_t at = 0; at < samples * across(); at += samples) {
-        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &why_[at]);
+        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &bright_[at]);
       }
     }
   }
 
   /// Writes `samples` samples of both channels.
-  void write(Sample* to_red, Sample* to_green) const {
+  void write(std::uint16_t* to_red, std::uint16_t* to_green) const {
     std::uint8_t lost = 0;
     for (std::size_t k = 0; k < samples * across(); ++k) {
       lost = static_cast<std::uint8_t>(lost | (count_[k] ^ across()));
@@ -110,53 +105,32 @@ class SampleBlock {
     if (lost == 0) {  // a constant divisor needs no division
       const auto all = static_cast<std::uint32_t>(step() * step());
       for (std::size_t j = 0; j < samples; ++j) {
-        to_red[j] = mean(sum_of<Total>(red_, j), all);
+        to_red[j] = mean(sum_of(red_, j), all);
       }
       for (std::size_t j = 0; j < samples; ++j) {
-        to_green[j] = mean(sum_of<Total>(green_, j), all);
+        to_green[j] = mean(sum_of(green_, j), all);
       }
       return;
     }
     for (std::size_t j = 0; j < samples; ++j) {
-      const auto count = sum_of<std::uint32_t>(count_, j);
-      if (count > 0) {
-        to_red[j] = mean(sum_of<Total>(red_, j), count);
-        to_green[j] = mean(sum_of<Total>(green_, j), count);
-      } else {
-        to_red[j] = to_green[j] = without_pixels(j);
-      }
+      const std::uint32_t count = sum_of(count_, j);
+      const auto none = static_cast<std::uint16_t>(
+          sum_of(bright_, j) > 0 ? grey_scale_of<std::uint16_t>().saturated : 0);
+      to_red[j] = count > 0 ? mean(sum_of(red_, j), count) : none;
+      to_green[j] = count > 0 ? mean(sum_of(green_, j), count) : none;
     }
   }
 
  private:
   static constexpr std::size_t pixels = samples * (Step > 0 ? Step : 16);
-  using Total = std::conditional_t<std::integral<Pixel>, std::uint32_t, Pixel>;
-  using Column = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, Total>;
-  enum Why : std::uint8_t { saturated = 1, no_number = 2 };
+  using Column = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
 
   constexpr int step() const { return Step > 0 ? Step : step_; }
   constexpr std::size_t across() const { return static_cast<std::size_t>(step()); }
 
-  static Sample mean(const Total& sum, std::uint32_t count) {
-    if constexpr (std::integral<Pixel>) {
-      constexpr Total units = sizeof(Sample) > sizeof(Pixel) ? 256 : 1;
-      return static_cast<Sample>((sum * units + count / 2) / count);
-    } else {
-      return sum / Total(static_cast<int>(count));
-    }
-  }
-
-  Sample without_pixels(std::size_t j) const {
-    unsigned why = 0;
-    for (std::size_t k = j * across(); k < (j + 1) * across(); ++k) {
-      why |= why_[k];
-    }
-    if constexpr (!std::integral<Sample>) {
-      if (why == no_number) {
-        return not_a_number<Sample>();
-      }
-    }
-    return (why & saturated) != 0 ? Sample(grey_scale_of<Sample>().saturated) : Sample(0);
+  static std::uint16_t mean(std::uint32_t sum, std::uint32_t count) {
+    constexpr std::uint32_t units = sizeof(Pixel) == 1 ? 256 : 1;
+    return static_cast<std::uint16_t>((sum * units + count / 2) / count);
   }
 
   /// Adds 64 pixels of a row to their columns, leaving out those without information.
@@ -165,67 +139,57 @@ class SampleBlock {
                                     Column* __restrict red_sums,
                                     Column* __restrict green_sums,
                                     std::uint8_t* __restrict counts,
-                                    std::uint8_t* __restrict whys) {
-    const Pixel top = Pixel(grey_scale_of<Pixel>().saturated), dark = Pixel(0);
-    if constexpr (std::integral<Pixel>) {
-      std::array<Pixel, samples> keep;  // all bits, or none
-      for (std::size_t i = 0; i < samples; ++i) {
-        const auto bright = static_cast<Pixel>(-int((reds[i] >= top) | (greens[i] >= top)));
-        const auto black = static_cast<Pixel>(-int((reds[i] <= dark) | (greens[i] <= dark)));
-        whys[i] = static_cast<std::uint8_t>(whys[i] | (bright & saturated));
-        keep[i] = static_cast<Pixel>(~(bright | black));
-        counts[i] = static_cast<std::uint8_t>(counts[i] + (keep[i] & 1));
-      }
-      for (std::size_t i = 0; i < samples; ++i) {
-        red_sums[i] = static_cast<Column>(red_sums[i] + static_cast<Column>(reds[i] & keep[i]));
-      }
-      for (std::size_t i = 0; i < samples; ++i) {
-        green_sums[i] =
-            static_cast<Column>(green_sums[i] + static_cast<Column>(greens[i] & keep[i]));
-      }
-    } else {
-      for (std::size_t i = 0; i < samples; ++i) {
-        const auto r = value(reds[i]), g = value(greens[i]);
-        const bool keeps = r > dark && g > dark && r < top && g < top;
-        whys[i] |= r >= top || g >= top ? saturated : r != r || g != g ? no_number : 0;
-        counts[i] = static_cast<std::uint8_t>(counts[i] + (keeps ? 1 : 0));
-        red_sums[i] = keeps ? red_sums[i] + reds[i] : red_sums[i];
-        green_sums[i] = keeps ? green_sums[i] + greens[i] : green_sums[i];
-      }
+                                    std::uint8_t* __restrict brights) {
+    constexpr auto top = static_cast<Pixel>(grey_scale_of<Pixel>().saturated), dark = Pixel(0);
+    std::array<Pixel, samples> keep;  // all bits, or none
+    for (std::size_t i = 0; i < samples; ++i) {
+      const auto bright = static_cast<Pixel>(-int((reds[i] >= top) | (greens[i] >= top)));
+      const auto black = static_cast<Pixel>(-int((reds[i] <= dark) | (greens[i] <= dark)));
+      brights[i] = static_cast<std::uint8_t>(brights[i] | (bright & 1));
+      keep[i] = static_cast<Pixel>(~(bright | black));
+      counts[i] = static_cast<std::uint8_t>(counts[i] + (keep[i] & 1));
+    }
+    for (std::size_t i = 0; i < samples; ++i) {
+      red_sums[i] = static_cast<Column>(red_sums[i] + static_cast<Column>(reds[i] & keep[i]));
+    }
+    for (std::size_t i = 0; i < samples; ++i) {
+      green_sums[i] = static_cast<Column>(green_sums[i] + static_cast<Column>(greens[i] & keep[i]));
     }
   }
 
   /// Sum over the columns of sample j.
-  template <class Sum, class Cells>
-  [[gnu::always_inline]] Sum sum_of(const Cells& cells, std::size_t j) const {
+  template <class Cells>
+  [[gnu::always_inline]] std::uint32_t sum_of(const Cells& cells, std::size_t j) const {
     if constexpr (Step > 0) {  // no loop, so that the one over the samples becomes vectors
       return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
-        return (Sum(0) + ... + Sum(cells[j * std::size_t(Step) + K]));
+        return (std::uint32_t(0) + ... + std::uint32_t(cells[j * std::size_t(Step) + K]));
       }
       (std::make_index_sequence<std::size_t(Step)>{});
     } else {
-      return std::accumulate(&cells[j * across()], &cells[j * across()] + step(), Sum(0));
+      return std::accumulate(&cells[j * across()], &cells[j * across()] + step(), std::uint32_t(0));
     }
   }
 
   int step_;
-  std::array<Column, pixels> red_, green_;  // sums of each column
-  std::array<std::uint8_t, pixels> count_, why_;
+  std::array<Column, pixels> red_, green_;           // sums of each column
+  std::array<std::uint8_t, pixels> count_, bright_;  // pixels that count; whether any is too bright
 };
 
 }  // namespace detail
 
-/// Writes the samples of a frame: means over step x step pixels, leaving out pixels that carry no
-/// information, in grey_scale_of<sample_t<Pixel>>(). If all are left out, the sample is the
-/// brightest value if one is saturated, else NaN if one is NaN, else 0, and carries no information
-/// either. False, and nothing written, for a step outside of 1..16 or where a grid has another
-/// size. Allocates nothing; O(rows cols), fastest for 8-bit pixels and steps up to 4.
+/// Writes the samples of a frame of 8 or 16 bit, in 16 bit: means over step x step pixels, leaving
+/// out pixels that carry no information. If all are left out, the sample is saturated if one of
+/// them is, else 0, and carries no information either. False, and nothing written, for a step
+/// outside of 1..16 or where a grid has another size. Allocates nothing; O(rows cols), fastest for
+/// 8-bit pixels and steps up to 4.
 template <grid Red, grid Green, class Pixel = std::remove_cv_t<cell_t<Red>>>
 bool sample_frame(const Red& red,
                   const Green& green,
                   int step,
-                  const StridedView<sample_t<Pixel>>& to_red,
-                  const StridedView<sample_t<Pixel>>& to_green) {
+                  const StridedView<std::uint16_t>& to_red,
+                  const StridedView<std::uint16_t>& to_green) {
+  static_assert(std::same_as<Pixel, std::uint8_t> || std::same_as<Pixel, std::uint16_t>,
+                "a frame has cells of 8 or 16 bit; for others use DepthEstimator");
   const auto from_red = as_view(red);
   const auto from_green = as_view(green);
   const Index rows = to_red.rows(), cols = to_red.cols();
@@ -244,7 +208,7 @@ bool sample_frame(const Red& red,
         block.write(&to_red(i, first), &to_green(i, first));
         continue;
       }
-      std::array<sample_t<Pixel>, block.samples> reds, greens;
+      std::array<std::uint16_t, block.samples> reds, greens;
       block.write(reds.data(), greens.data());
       for (Index j = 0; j < n; ++j) {
         to_red(i, first + j) = reds[static_cast<std::size_t>(j)];

@@ -162,9 +162,8 @@ class Fingertip {
   /// frame of another size.
   template <class Red, class Green>
   bool take_samples(const Red& red, const Green& green) {
-    static_assert(std::is_same_v<sample_t<cell_t<Red>>, std::uint16_t> &&
-                      std::is_same_v<cell_t<Red>, cell_t<Green>>,
-                  "a frame has cells of 8 or 16 bit; for others use DepthEstimator");
+    static_assert(std::is_same_v<cell_t<Red>, cell_t<Green>>,
+                  "red and green have different types of cell");
     const Index step = pad_->step;
     if (red.rows() != rows() || red.cols() != cols() || !same_size(red, green)) {
       return false;
