@@ -109,17 +109,11 @@ enum class RatioUpdate : std::uint8_t {
 };
 
 /// The update that a status of the stick ratio means.
-template <class Status>
-  requires requires {
-    Status::updated;
-    Status::unmoved;
-    Status::no_contact;
-  }
-constexpr RatioUpdate update_of(Status status) {
-  return status == Status::updated      ? RatioUpdate::fresh
-         : status == Status::unmoved    ? RatioUpdate::unmoved
-         : status == Status::no_contact ? RatioUpdate::no_contact
-                                        : RatioUpdate::missing;
+constexpr RatioUpdate update_of(StickStatus status) {
+  return status == StickStatus::updated      ? RatioUpdate::fresh
+         : status == StickStatus::unmoved    ? RatioUpdate::unmoved
+         : status == StickStatus::no_contact ? RatioUpdate::no_contact
+                                             : RatioUpdate::missing;
 }
 
 struct FrictionLimitOptions {
@@ -234,9 +228,9 @@ class FrictionLimit {
       return result;
     }
     result.normal_n = load.normal_n;
-    if (slides) {
-      learn(result.friction);
-    } else if (fresh && S(1) < S(2) * ratio && S(max_rise) * limit_ < result.friction) {
+    if (fresh && S(2) * ratio < S(1)) {
+      learn(result.friction, slides);
+    } else if (fresh && S(max_rise) * limit_ < result.friction) {
       limit_ = not_a_number<S>();
     }
     result.limit = limit_;
@@ -256,45 +250,37 @@ class FrictionLimit {
   /// sticks carries them only while its load falls below the highest since the reference by more
   /// than noise does: then the ratio is that of this frame. Under an object that slides, the
   /// membrane springs back while the load stays: the last ratio applies, and a first slide is
-  /// learnt if less than half stuck in it. The standard deviation grows where the dots slip more
-  /// than a friction of 0.5, or the limit, lets them under this load: a soft object moves its dots
-  /// as in partial slip. It also grows where it is not known which answer holds, by a ratio
-  /// anywhere from 0 up, and after a slide, which may have gone on since the reference.
-  template <class Stick>
-    requires requires(const Stick& seen) {
-      seen.stick_ratio;
-      seen.ratio_sd;
-      update_of(seen.status);
-    }
-  SlipResult<S> operator()(const ContactLoad<S>& load, const Stick& seen) {
+  /// learnt if less than half stuck in it. The standard deviation grows where the limit lets the
+  /// object slide under this load, and where it is not known which answer holds, by a ratio
+  /// anywhere from 0 up. That of a slide which shows the limit for the first time rests on the dots
+  /// alone.
+  template <scalar T>
+  SlipResult<S> operator()(const ContactLoad<S>& load, const StickResult<T>& seen) {
+    using std::sqrt;
     RatioUpdate update = update_of(seen.status);
     S ratio = S(seen.stick_ratio), sd = S(seen.ratio_sd);
     Index age = seen.reference_age;
-    S slid_share = S(0);
-    bool falls_back = false, carried = false;
-    if constexpr (requires { seen.back_age; }) {
-      falls_back = is_finite(seen.back_ratio);
-      if (falls_back) {
-        age = seen.back_age;
-        const S before = highest_of_last(age), now = friction_with(load);
-        carried = now < (S(1) - fall_of_noise(age)) * before;
-        const bool slides =
-            S(options_.slide_fraction) * before < now && !is_finite(limit_) && S(2) * ratio < S(1);
-        ratio = carried ? S(seen.back_ratio) : slides ? S(0) : ratio;
-        sd = carried ? S(seen.back_sd) : sd;
-        slid_share = !carried                                       ? S(slides ? 0.0 : 1.0 / 3)
-                     : S(options_.slide_fraction) * limit_ < before ? S(1) - now / before
-                                                                    : S(0);
-        update = carried || slides ? RatioUpdate::fresh : update;
-      }
+    const bool had_limit = is_finite(limit_);
+    const bool falls_back = is_finite(seen.back_ratio);
+    bool carried = false;
+    if (falls_back) {
+      age = seen.back_age;
+      const S before = highest_of_last(age), now = friction_with(load);
+      carried = now < (S(1) - fall_of_noise(age)) * before;
+      const bool slides =
+          S(options_.slide_fraction) * before < now && !had_limit && S(2) * ratio < S(1);
+      sd = carried ? S(seen.back_sd) : slides ? sd : sqrt(sd * sd + ratio * ratio / S(3));
+      ratio = carried ? S(seen.back_ratio) : slides ? S(0) : ratio;
+      update = carried || slides ? RatioUpdate::fresh : update;
     }
     SlipResult<S> result = (*this)(load, ratio, update);
     const bool slid = result.status == FrictionLimitStatus::sliding;
-    if (slid) {
-      result.ratio_sd = falls_back ? zero_sd(S(seen.back_ratio), result.friction) : result.ratio_sd;
-    } else {
-      using std::sqrt;
-      result.ratio_sd = held_sd(result, sqrt(sd * sd + slid_share * ratio * ratio));
+    if (!slid) {
+      result.ratio_sd = held_sd(result, sd);
+    } else if (falls_back) {
+      result.ratio_sd = zero_sd(S(seen.back_ratio), result.friction);
+    } else if (!had_limit && result.ratio_sd < sd) {
+      result.ratio_sd = sd;
     }
     result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
@@ -326,9 +312,6 @@ class FrictionLimit {
   /// factor while more than half of it sticks makes the limit unknown again.
   static constexpr double max_rise = 1.15;
 
-  /// Least friction of an object whose limit is not known.
-  static constexpr double least_friction = 0.5;
-
   /// Standard deviation of the difference of two L, relative to L.
   double noise() const {
     return std::sqrt(2.0) * (std::max)(1 - options_.slide_fraction, 1e-3) / 2.4;
@@ -355,17 +338,11 @@ class FrictionLimit {
     return sqrt(S(square(least_stick) / 3) +
                 otherwise * otherwise * (S(1) - chance_of_slide(friction)));
   }
-  /// Of a ratio by the dots with the standard deviation `sd`, where the object may slide, or where
-  /// friction allows more to stick.
+  /// Of a ratio by the dots with the standard deviation `sd`, where the object may slide.
   S held_sd(const SlipResult<S>& r, const S& sd) const {
     using std::sqrt;
-    if (!is_finite(r.friction) || !is_finite(sd)) {
-      return sd;
-    }
-    const S slides = r.stick_ratio * r.stick_ratio * chance_of_slide(r.friction);
-    const S allowed = S(1) - r.friction / S(least_friction) - r.stick_ratio;
-    const S more = is_finite(limit_) ? slides : S(0) < allowed ? allowed * allowed : S(0);
-    return sqrt(sd * sd + more);
+    const bool known = is_finite(r.friction) && is_finite(limit_) && is_finite(sd);
+    return known ? sqrt(sd * sd + square(r.stick_ratio) * chance_of_slide(r.friction)) : sd;
   }
 
   /// L; NaN if the normal force is below min_normal_n.
@@ -375,14 +352,19 @@ class FrictionLimit {
 
   /// Learns from a slide. Rises fast and falls slowly: noise makes the mean slightly too high,
   /// never too low. A load below slide_fraction of the limit is not that of a slide under the same
-  /// friction, and one near 0 is no friction.
-  void learn(const S& friction) {
+  /// friction, and one near 0 is no friction. Where most slips, L above the limit shows that the
+  /// limit is at least what noise leaves of L: no object bears more than its limit.
+  void learn(const S& friction, bool slides) {
     if (!is_finite(limit_)) {
-      limit_ = S(1e-6) < friction ? friction : limit_;
-    } else if (!(friction < S(options_.slide_fraction) * limit_)) {
-      const S top = S(max_rise) * limit_, toward = friction < top ? friction : top;
+      limit_ = slides && S(1e-6) < friction ? friction : limit_;
+      return;
+    }
+    const S top = S(max_rise) * limit_, toward = friction < top ? friction : top;
+    const S fraction = S(options_.slide_fraction);
+    if (slides && !(friction < fraction * limit_)) {
       limit_ = limit_ + (limit_ < toward ? S(0.5) : S(0.1)) * (toward - limit_);
     }
+    limit_ = limit_ < fraction * toward ? fraction * toward : limit_;
   }
 
   /// The largest L of the `age` frames before this one, of which the first is the reference; NaN if

@@ -154,12 +154,8 @@ class GripControl {
   }
 
   /// The same for a result of a stick ratio.
-  template <class Stick>
-    requires requires(const Stick& seen) {
-      seen.stick_ratio;
-      update_of(seen.status);
-    }
-  GripResult<S> operator()(const Stick& seen, const S& step_s) {
+  template <scalar T>
+  GripResult<S> operator()(const StickResult<T>& seen, const S& step_s) {
     return (*this)(S(seen.stick_ratio), update_of(seen.status), step_s);
   }
 

@@ -119,8 +119,7 @@ struct [[nodiscard]] StickResult {
   /// share q of dots that slip by one to two times what counts as slip, as on a soft object or with
   /// noise, and the change c since the last answer, before the first one since 1, which may be any
   /// part of a larger one when the steps between frames are large. A kept ratio has 0.05 more with
-  /// each frame, up to 0.5, and where the dots do not tell, at least that of a number anywhere from
-  /// 0 to the ratio: the object may slide.
+  /// each frame, up to 0.5.
   S ratio_sd = not_a_number<S>();
   S furthest = S(0);        ///< d_max, the largest displacement from the reference
   Index reference_age = 0;  ///< frames from the reference to the answer
@@ -212,10 +211,6 @@ class StickRatio {
     } else if (result_.ratio_sd < S(0.5)) {
       result_.ratio_sd = (std::min)(result_.ratio_sd + S(0.05), S(0.5));
     }
-    const bool is_lost =
-        result_.status == StickStatus::too_few_dots || result_.status == StickStatus::not_in_order;
-    const S from_0 = result_.stick_ratio / S(std::sqrt(3.0));
-    result_.ratio_sd = is_lost && result_.ratio_sd < from_0 ? from_0 : result_.ratio_sd;
     result_.back_sd = is_finite(result_.back_ratio) ? sd : not_a_number<S>();
     const bool slips = 10 * result_.slip > result_.stick + result_.slip;
     if (result_.updated() && slips && !has_outline_ && !options_.covers_pattern) {
@@ -534,10 +529,11 @@ class StickRatio {
     set_slips();
   }
   /// Extends the fit to the dots that follow within the limit, until their number no longer
-  /// changes. A slip has more noise than its mean over neighbours.
+  /// changes, but only three times: then it walks into dots that slip. A slip has more noise than
+  /// its mean over neighbours.
   bool gather() {
     bool found = true;
-    for (Index pass = 0, before = -1; pass < 6; ++pass) {
+    for (Index pass = 0, before = -1; pass < 3; ++pass) {
       const auto follows = [&](const Pair& p) {
         return value(squared_norm(p.slip)) < 2 * value(limit_sq_);
       };
