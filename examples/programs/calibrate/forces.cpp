@@ -159,7 +159,14 @@ void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
 }
 
 void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
-  const auto force = fingerpad::fit_tangential_force(samples, by.reference);
+  const auto fit_of = [&](Samples some) {
+    return fingerpad::fit_tangential_force(some, by.reference);
+  };
+  const auto force = fit_of(samples);
+  const double unseen_n = unseen(samples, fit_of, [&](const auto& model, const Sample& s) {
+    const double gain = model.law.slope * std::pow(s.measure / by.reference, model.law.exponent);
+    return norm(gain * s.displacement_mm - s.tangential_force_n);
+  });
   const auto moment = fingerpad::fit_moment(samples, by.reference);
   Report report{.what = "shear", .residual = force.residual_sd, .residual_unit = "N"};
   report.parameters = {
@@ -168,6 +175,9 @@ void add_shear(Samples samples, const Measure& by, Outcome& outcome) {
       {"moment_n_mm_per_rad", moment.law.slope, std::sqrt(moment.covariance[0][0])},
       {"rotation_exponent", moment.law.exponent, std::sqrt(moment.covariance[1][1])},
       {"residual_of_the_moment_n_mm", moment.residual_sd}};
+  if (std::isfinite(unseen_n)) {
+    report.parameters.push_back({"error_of_an_unseen_shear_n", unseen_n});
+  }
   if (std::isfinite(force.gauge_angle_sd_rad)) {
     constexpr double degrees = 57.29577951308232;
     report.parameters.push_back({"angle_of_the_gauge_degrees", degrees * force.gauge_angle_rad,
@@ -297,20 +307,25 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
       (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
     replay::fail(
         contacts_file,
-        "the contacts must have the columns flat_area_mm2 and contact_depth_mm (as frames.csv of "
-        "replay), and the table of the gauge frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
+        "the contacts must have the column flat_area_mm2, and contact_depth_mm where depth is known "
+        "(as frames.csv of replay), and the table of the gauge "
+        "frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
   }
   const std::vector<Sample> by_area = samples_of(contacts, gauge, area);
-  const std::vector<Sample> by_depth = samples_of(contacts, gauge, depth);
+  const bool has_depth = contacts.has(depth.column);  // a gel without fluid has none
+  const Measure& shear_by = has_depth ? depth : area;
+  const auto by_depth = has_depth ? samples_of(contacts, gauge, depth) : by_area;
   Outcome outcome;
   add_normal(by_area, area, outcome);
-  add_normal(by_depth, depth, outcome);
+  if (has_depth) {
+    add_normal(by_depth, depth, outcome);
+  }
   const bool dragged = std::any_of(by_depth.begin(), by_depth.end(), [](const Sample& s) {
     return std::isfinite(s.tangential_force_n.x) && norm(s.displacement_mm) > 0.01;
   });
   if (dragged) {
     try {
-      add_shear(by_depth, depth, outcome);
+      add_shear(by_depth, shear_by, outcome);
     } catch (const fingerpad::parameter_error& error) {
       outcome.refusals.push_back({"shear", error.what()});
     }
