@@ -72,7 +72,7 @@ void try_absorption(Input& in) {
                                               level * in.number(0.2, 1)});
     samples.push_back(sample);
   }
-  const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples), in.number(0, 2));
+  const auto fit = fit_absorption(std::span<const DepthSample<double>>(samples));
   require(!fit.ok() || is_finite(fit.fluid.kappa), "a fluid is finite");
   require(!fit.ok() || check(fit.fluid).empty(), "a fluid is accepted");
 }

@@ -21,7 +21,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,7 +45,6 @@ struct DepthSample {
   Point2<S> plate_mm;  ///< where its ray meets the plate, from the axis
   S depth_mm;          ///< l along the ray, >= 0
   Colour<S> colour;    ///< grey levels, > 0
-  S weight = S(1);     ///< 1 / (relative noise of the colour), > 0
 };
 
 template <scalar S>
@@ -56,8 +54,7 @@ std::string check(const DepthSample<S>& s) {
                                {"plate_mm.y", s.plate_mm.y, finite_number},
                                {"depth_mm", s.depth_mm, not_negative},
                                {"colour.red", s.colour.red, positive},
-                               {"colour.green", s.colour.green, positive},
-                               {"weight", s.weight, positive}});
+                               {"colour.green", s.colour.green, positive}});
 }
 
 /// The sample of pixel (row, col).
@@ -66,10 +63,9 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
                             const S& row,
                             const S& col,
                             const S& depth_mm,
-                            const Colour<S>& colour,
-                            const S& weight = S(1)) {
+                            const Colour<S>& colour) {
   const Point3<S> at = point_at(camera, row, col, S(0));
-  return {ray_at_pixel(camera, row, col), {at.x, at.y}, depth_mm, colour, weight};
+  return {ray_at_pixel(camera, row, col), {at.x, at.y}, depth_mm, colour};
 }
 
 /// The fluid, the light and their uncertainty. Parameters are in the order c_red, delta, and the
@@ -84,7 +80,7 @@ struct [[nodiscard]] AbsorptionFit {
   const char* cause = cause::not_converged;  ///< likely mistake
   Absorption<S> fluid = {};                  ///< with kappa on the axis
   PadLight<S, Degree> light = {};
-  /// NaN with as many samples as parameters and no given grey_noise.
+  /// NaN with as many samples as parameters.
   std::array<std::array<S, parameters>, parameters> covariance =
       detail::zero_matrix<S, parameters>();
   S condition =
@@ -173,11 +169,7 @@ class AbsorptionProblem {
   static constexpr std::size_t linear = Point::Fit::linear;
 
   AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& scale_mm)
-      : samples_(samples), scale_mm_(scale_mm) {
-    for (const DepthSample<S>& s : samples) {
-      weights_.push_back(s.weight);
-    }
-  }
+      : samples_(samples), scale_mm_(scale_mm), weights_(samples.size(), S(1)) {}
 
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
   /// of a colour. It is constant to a few per cent over the depths of a pad.
@@ -187,7 +179,7 @@ class AbsorptionProblem {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const DepthSample<S>& s = samples_[i];
       const S path = s.ray.path_factor * s.depth_mm;
-      weights_[i] = s.weight / sqrt(exp(S(2) * p.delta * path) + square(p.linear[0]));
+      weights_[i] = S(1) / sqrt(exp(S(2) * p.delta * path) + square(p.linear[0]));
     }
   }
 
@@ -347,15 +339,12 @@ S expects_determined(std::span<const DepthSample<S>> samples, std::size_t parame
 /// plate (one number if Degree is 0), from samples at 3 or more depths. With 4 samples of Degree 0
 /// there can be two exact solutions (4 % of random sensors); the one with the smaller delta is
 /// returned. One more depth avoids this. Refuses samples that do not determine the parameters, and
-/// names what is missing (parameter_error). `grey_noise`: sd of a colour of weight 1, grey levels;
-/// 0: from the residuals. Allocates; O(samples) per iteration, after some 700 trial fluids on at
-/// most 400 of the samples, with Degree 0.
+/// names what is missing (parameter_error). Allocates; O(samples) per iteration, after some 700
+/// trial fluids on at most 400 of the samples, with Degree 0.
 template <int Degree = 0, scalar S = double>
-AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
-                                        const std::type_identity_t<S>& grey_noise = S(0)) {
+AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples) {
   using std::sqrt;
   const char* const owner = "fit_absorption";
-  require(owner, {{"grey_noise", grey_noise, not_negative}});
   using Fit = AbsorptionFit<S, Degree>;
   const S rho_sq = detail::expects_determined(samples, Fit::parameters);
   const S scale_mm = rho_sq > S(0) ? sqrt(rho_sq) : S(1);
@@ -409,11 +398,10 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples,
   fit.delta_at_limit = !(p.delta > S(0));
 
   const double left = static_cast<double>(samples.size()) - static_cast<double>(all);
-  const S by_residual = left > 0 ? sqrt(p.cost / S(left)) : not_a_number<S>();
-  const S noise = grey_noise > S(0) ? grey_noise : by_residual;
+  const S variance = left > 0 ? p.cost / S(left) : not_a_number<S>();
   for (std::size_t i = 0; i < all; ++i) {  // c_red and delta come first
     for (std::size_t j = 0; j < all; ++j) {
-      fit.covariance[(i + 2) % all][(j + 2) % all] = square(noise) * covariance[i * all + j];
+      fit.covariance[(i + 2) % all][(j + 2) % all] = variance * covariance[i * all + j];
     }
   }
   fit.explained = problem.explained_by_depth(p);
