@@ -74,9 +74,9 @@ struct [[nodiscard]] ContactResult {
   Index unknown_px = 0;  ///< pixels without depth, or with too few neighbours to decide
   Index regions = 0;     ///< connected parts of the contact
   double area_mm2 = 0;   ///< of the contact, at its depth, projected on the plate
-  /// Standard deviation of the area, from where the edge may lie: anywhere within the touching gap,
-  /// and moved by the noise of the free membrane's curvature. Where the edge is not placed,
-  /// anywhere within the ring's radius.
+  /// Standard deviation of the area: the touching gap, as a rigid object touches nothing of it, and
+  /// the edge as the noise of the free membrane's curvature moves it. Where the edge is not placed,
+  /// it may lie anywhere within the ring's radius.
   double area_sd_mm2 = 0;
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
@@ -325,7 +325,7 @@ class ContactRegion {
     // across a straight edge, the ring's mean rises by 4 / pi of the jump per ring radius; its
     // noise moves stretches of the edge as long as the ring is wide, each by itself
     const double ring_mm = test_.ring_px * pixel_mm, edge_mm = perimeter_mm(region, pixel_mm);
-    const double gap_mm = std::sqrt(test_.touching_gap_mm / (3 * jump));
+    const double gap_mm = std::sqrt(test_.touching_gap_mm / jump);
     const double moved_mm =
         (std::min)(free_sd_per_mm_ / jump * std::numbers::pi / 4, 1.0) * ring_mm;
     const double stretches = (std::max)(edge_mm / (2 * ring_mm), 1.0);

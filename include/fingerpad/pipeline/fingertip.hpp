@@ -261,10 +261,10 @@ class Fingertip {
     return wrench.ok() || wrench.status == WrenchStatus::uncertain;
   }
 
-  /// An edge that may lie so far off that a quarter of the area is in doubt; or what the rim says,
-  /// which has not seen the contact: a press beyond four standard deviations where no region is
-  /// found, or an area on which the pressure alone exceeds the press by a quarter. On an object
-  /// that is rigid and not hollow, the membrane's tension only adds to the pressure.
+  /// A vague edge, as that of a first touch is; or what the rim says, which has not seen the
+  /// contact: a press beyond four standard deviations where no region is found, or an area on which
+  /// the pressure alone exceeds the press by a quarter. On an object that is rigid and not hollow,
+  /// the membrane's tension only adds to the pressure.
   static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
     const ContactResult& contact = touch.contact;
     const bool is_felt = has_sd(touch.wrench);
@@ -273,7 +273,7 @@ class Fingertip {
     if (!contact.in_contact()) {
       return is_felt && press_n > 4 * sd_n;
     }
-    return 4 * contact.area_sd_mm2 > contact.area_mm2 ||
+    return detail::has_vague_edge(contact) ||
            (is_felt && pressure_mpa * contact.area_mm2 > 1.25 * (press_n + 2 * sd_n));
   }
 

@@ -154,14 +154,21 @@ struct FollowedDots {
   }
 };
 
+/// Whether the standard deviation of a region's area is a quarter of it, as that of a first touch
+/// is: nothing that rests on its edge is certain.
+inline bool has_vague_edge(const ContactResult& contact) {
+  return 4 * contact.area_sd_mm2 > contact.area_mm2;
+}
+
 /// Slip and motion from the printed dots: all that a fingertip remembers from frame to frame.
 struct FingertipDots {
   OwnedGrid<Point2<double>> seen;  // in px of the samples
   OwnedGrid<Point3<double>> at_mm;
   OwnedGrid<std::uint8_t> touching;
-  OwnedGrid<std::uint8_t> held;  // those that touch wherever the contact's edge may lie
+  OwnedGrid<std::uint8_t> held;  // those that touch wherever the edge may lie
   double radius_px;              // of the samples
   double depth_noise_mm;
+  bool follows = false;  // an object
   ContactShift<> shift;
   ObjectMotion<> motion;
   StickRatio<> stick;
@@ -184,6 +191,7 @@ struct FingertipDots {
 
   void reset() {
     motion = ObjectMotion<>(seen.rows, seen.cols);
+    follows = false;
     stick.reset();
     friction.reset();
   }
@@ -210,6 +218,9 @@ struct FingertipDots {
     contact_at_dots(seen.view(), mask, touching.view(), radius_px);
     const double edge_px = edge_sd_px(touch.contact);
     contact_at_dots(seen.view(), mask, held.view(), radius_px + edge_px);
+    if (has_vague_edge(touch.contact) && !follows) {  // no object begins here
+      std::fill(held.cells.begin(), held.cells.end(), std::uint8_t{0});
+    }
     touch.stick = stick(at_mm.view(), touching.view(), time_s);
     if (touch.contact.ok()) {
       touch.shift = shift(at_mm.view(), touching.view());
@@ -231,6 +242,7 @@ struct FingertipDots {
     const LazyView slips(seen.rows, seen.cols,
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
     touch.motion = motion(at_mm.view(), held.view(), slips, depth_noise_mm);
+    follows = touch.motion.has_pose();
   }
 
   /// The load from a six-axis force, else from the look-up; unknown without both.
