@@ -210,10 +210,6 @@ struct Bench {
     each_pixel<double>("newton_depth, double, cold", [](const auto& in, std::size_t k) {
       return newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });
-    each_pixel<double>("newton_depth, double, warm by 0.05 mm", [this](const auto& in,
-                                                                       std::size_t k) {
-      return newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k), exact.cells[k] + 0.05);
-    });
     each_pixel<float>("newton_depth, float, cold", [](const auto& in, std::size_t k) {
       return newton_depth(in.fluid, in.pencils[k], in.g[k], in.colour(k));
     });

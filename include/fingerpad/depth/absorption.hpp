@@ -203,17 +203,15 @@ PixelStatus range_of_root(const Absorption<S>& fluid,
 
 }  // namespace detail
 
-/// Newton's method on F from `start_mm` (the depth in the last frame, or 0). Every step stays
-/// inside the bracket around the root that the signs of F give. Converges to the roundoff of F:
-/// <= 1e-12 mm in double for depths up to 14 mm. Five steps are typical from 0, four from the last
-/// frame; 60 at most. A dual number gets the exact derivative of the root with respect to whatever
-/// is seeded.
+/// Newton's method on F from depth 0. Every step stays inside the bracket around the root that the
+/// signs of F give. Converges to the roundoff of F: <= 1e-12 mm in double for depths up to 14 mm.
+/// Five steps are typical, 60 the most. A dual number gets the exact derivative of the root with
+/// respect to whatever is seeded.
 template <scalar S>
 DepthRoot<S> newton_depth(const Absorption<S>& fluid,
                           const Ray<S>& ray,
                           const S& scattering,
-                          const Colour<S>& colour,
-                          const S& start_mm = S(0)) {
+                          const Colour<S>& colour) {
   using Real = scalar_real_t<S>;
   const PixelStatus range = detail::range_of_root(fluid, ray, scattering, colour);
   if (range != PixelStatus::ok) {
@@ -222,8 +220,7 @@ DepthRoot<S> newton_depth(const Absorption<S>& fluid,
   S low = S(0);
   S high = fluid.max_depth_mm;
   const Real enough = 16 * epsilon<S>() * value(high);
-  const bool start_is_inside = value(start_mm) > 0 && value(start_mm) < value(high);
-  S depth = start_is_inside ? start_mm : low;
+  S depth = low;
   for (int i = 0; i < 60; ++i) {
     const auto [f, slope] = depth_equation(fluid, ray, scattering, colour, depth);
     (value(f) < 0 ? low : high) = depth;
