@@ -41,8 +41,8 @@ struct ContactLoad {
 };
 
 /// Computes the load from the six-axis force and moment, which the object exerts on the pad, about
-/// Q, and from the dots in contact. The normal is the mean normal of the quadric through them. The
-/// forces are NaN with fewer than three dots. Allocates nothing, O(rows cols).
+/// Q, and from the dots in contact. The normal is that of the mean slope of the quadric through
+/// them. The forces are NaN with fewer than three dots. Allocates nothing, O(rows cols).
 template <scalar S, spatial_dot_grid Dots, contact_mask Contact>
 ContactLoad<S> contact_load(const Point3<S>& force_n,
                             const Point3<S>& moment_n_mm,
@@ -67,9 +67,7 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
   if (surface.dots < 3) {
     return {};
   }
-  Point3<S> normals = {S(0), S(0), S(0)};
-  for_each([&](const Point3<S>& p) { normals += surface.normal(p); });
-  const Point3<S> normal = normalized(normals);
+  const Point3<S> normal = surface.normal();
   S arms = S(0);
   for_each([&](const Point3<S>& p) {
     const Point3<S> arm = p - surface.middle;

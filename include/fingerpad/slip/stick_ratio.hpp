@@ -245,9 +245,8 @@ class StickRatio {
     P then, now;
     S weight;              // in the fit of the motion
     Point2<S> slip, mean;  // of itself, and averaged over neighbours
-    S limit_sq;            // the dot slips if its mean is longer
-    bool sticks() const { return value(squared_norm(mean)) < value(limit_sq); }
   };
+  bool sticks(const Pair& p) const { return value(squared_norm(p.mean)) < value(limit_sq_); }
   template <class T>
   using Grid = detail::Bordered<T>;
   template <class T>
@@ -417,9 +416,9 @@ class StickRatio {
       return StickStatus::too_few_dots;
     }
     const Index stick =
-        std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.sticks(); });
-    const Index near = std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& p) {
-      return value(squared_norm(p.mean)) < 4 * value(p.limit_sq);
+        std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return sticks(p); });
+    const Index near = std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) {
+      return value(squared_norm(p.mean)) < 4 * value(limit_sq_);
     });
     const S known = detail::number<S>(detail::size_of(pairs_));
     const S ratio = detail::number<S>(stick) / known;
@@ -435,9 +434,9 @@ class StickRatio {
     }
     std::fill(slips_.begin(), slips_.end(), no_slip());
     for (Pair& p : pairs_) {
-      states_[p.k] = p.sticks() ? DotState::stick : DotState::slip;
+      states_[p.k] = sticks(p) ? DotState::stick : DotState::slip;
       slips_[p.k] = p.mean;
-      p.weight = S(p.sticks() ? 1 : 0);
+      p.weight = S(sticks(p) ? 1 : 0);
     }
     center_ = stick > 0 ? mean_of([](const Pair& p) { return p.now; }) : center_;
     result_.stick_ratio = ratio;
@@ -452,33 +451,8 @@ class StickRatio {
     pairs_.clear();
     for (const Index k : placed_) {
       if (is_finite(then[k])) {
-        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}, limit_of(k, then)});
+        pairs_.push_back({k, then[k], now_[k], S(1), {}, {}});
       }
-    }
-  }
-  /// Where neighbours are missing or do not touch, a mean has more noise. Beside dots that slip too
-  /// far to count in it the limit stays: there a large slip is likely to be true. In space it stays
-  /// as well, as dots that leave a rolling object at the edge slip by little.
-  S limit_of(Index k, const P* then) const {
-    S weights = S(0), squares = S(0);
-    around(k, [&](const S& weight, Index at) {
-      const S there = S(is_finite(then[at]) && is_finite(now_[at]) ? 1 : 0);
-      weights = weights + weight * there;
-      squares = squares + weight * weight * there;
-    });
-    const S noise_sq = S(4 * ln_100) * sd_ * sd_ * squares / (weights * weights);
-    return frame_.in_image ? (std::max)(limit_sq_, noise_sq) : limit_sq_;
-  }
-  /// Visits a dot and its eight neighbours with their weights in a mean.
-  template <class Visit>
-  void around(Index k, const Visit& visit) const {
-    const Index w = frame_.width;
-    visit(S(6), k);
-    for (const Index beside : {Index(-1), Index(1), -w, w}) {
-      visit(S(2), k + beside);
-    }
-    for (const Index across : {-w - 1, 1 - w, w - 1, w + 1}) {
-      visit(S(1), k + across);
     }
   }
 
@@ -642,9 +616,15 @@ class StickRatio {
         small_[p.k] = {p.slip.x, p.slip.y, S(1)};  // z counts
       }
     }
+    const Index w = frame_.width;
     for (Pair& p : pairs_) {
-      P sum = {S(0), S(0), S(0)};
-      around(p.k, [&](const S& weight, Index at) { sum += weight * small_[at]; });
+      P sum = S(6) * small_[p.k];
+      for (const Index beside : {Index(-1), Index(1), -w, w}) {
+        sum += S(2) * small_[p.k + beside];
+      }
+      for (const Index across : {-w - 1, 1 - w, w - 1, w + 1}) {
+        sum += small_[p.k + across];
+      }
       p.mean = value(small_[p.k].z) > 0 ? Point2<S>{sum.x / sum.z, sum.y / sum.z} : p.slip;
     }
   }

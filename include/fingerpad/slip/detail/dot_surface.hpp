@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The surface on which the dots in contact lie: its normals, and axes along it.
+// The surface on which the dots in contact lie.
 #include <algorithm>
 #include <array>
 
@@ -28,16 +28,8 @@ struct Quadric {
     const auto t = terms(p.x - middle.x, p.y - middle.y);
     return middle.z + c[0] + c[1] * t[1] + c[2] * t[2] + c[3] * t[3] + c[4] * t[4] + c[5] * t[5];
   }
-  /// dz/dx and dz/dy.
-  Point2<S> slope(const Point3<S>& p) const {
-    const S x = p.x - middle.x, y = p.y - middle.y;
-    return {c[1] + S(2) * c[3] * x + c[4] * y, c[2] + c[4] * x + S(2) * c[5] * y};
-  }
-  /// Unit normal toward the object.
-  Point3<S> normal(const Point3<S>& p) const {
-    const Point2<S> z = slope(p);
-    return normalized(Point3<S>{-z.x, -z.y, S(1)});
-  }
+  /// Unit normal toward the object, by the mean slope of the points.
+  Point3<S> normal() const { return normalized(Point3<S>{-c[1], -c[2], S(1)}); }
 };
 
 /// The surface through all points that for_each(visit) visits. It is called twice. A plane if the
