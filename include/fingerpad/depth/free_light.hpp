@@ -11,6 +11,10 @@
 // (a temperature, a pressure). Two equations hold in each block: that of depth, and that the
 // membrane is as bright as in the reference once the path through the fluid is taken off. Without
 // the second, a change of light near the rim cannot be told from one of the slope.
+//
+// During a press the second equation still tells that the light changes, though not how: from the
+// measured depth follows how bright the membrane should be. A change of red moves the depth, and by
+// it the brightness, by what the fluid absorbs in that length.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,6 +40,12 @@ struct FreeLightResult {
   /// Error of depth, in mm, that an error of one in both gains would make, and one in red over
   /// green; means over the pad.
   double mm_per_green = 0, mm_per_balance = 0;
+};
+
+/// How much brighter the membrane is than in the reference, at the depths that were measured.
+struct Brightness {
+  double share = 0;         ///< 0: as bright; NaN if fewer than 50 blocks carry information
+  double mm_per_share = 0;  ///< depth per share if red has changed; another lamp moves it by less
 };
 
 /// Finds the gains of frames of the free pad. Constant after its construction: share it. A call
@@ -72,6 +82,50 @@ class FreeLight {
     return fitted([&](const Block& b) { return seen(b, reds, greens); });
   }
 
+  /// Of a frame in the light `gains`, free or pressed, with the depth that was measured in it, both
+  /// of the reference's size. Pixels beyond 20 % of what is expected are dots, and left out.
+  /// What grows with the difference from the free depth is no light: the fluid's constants may be
+  /// off by a few per cent.
+  template <grid Green, grid Depth>
+  Brightness brightness(const Green& green,
+                        const Depth& depth_mm,
+                        const LightGains& gains,
+                        const GreyScale& scale = grey_scale_of<cell_t<Green>>()) const {
+    std::array<std::array<double, 2>, 2> a{};
+    std::array<double, 2> b{};
+    double fades = 0;
+    for (const Block& block : blocks_) {
+      const double higher =
+          static_cast<double>(depth_mm(block.row + width_ / 2, block.col + width_ / 2)) -
+          block.middle_mm;
+      const double fade = block.darkens / block.depth_mm;
+      const double expected =
+          block.bright * gains.green * scale.units_per_level * std::exp(-fade * higher);
+      double sum = 0, count = 0;
+      for (Index k = 0; k < width_ * width_; ++k) {
+        const auto g =
+            static_cast<double>(green(block.row + k / width_, block.col + k % width_));
+        const bool is_lit = std::abs(g - expected) < 0.2 * expected && scale.counts(g);
+        sum += is_lit ? g : 0;
+        count += is_lit ? 1 : 0;
+      }
+      const double share = std::log(sum / count / expected);
+      if (3 * count > static_cast<double>(width_ * width_) && std::abs(share) < 0.1) {
+        a[0][0] += 1;
+        a[0][1] += higher;
+        a[1][1] += square(higher);
+        b[0] += share;
+        b[1] += share * higher;
+        fades += fade;
+      }
+    }
+    a[1][0] = a[0][1];
+    a[1][1] += a[0][0] / 100;  // of a free pad there is nothing to tell
+    const detail::NormalEquations<double, 2> equations(a);
+    const bool is_told = a[0][0] >= 50 && equations.good;
+    return {is_told ? equations.solve(b)[0] : not_a_number<double>(), a[0][0] / fades};
+  }
+
  private:
   struct Block {
     Index row, col;
@@ -79,6 +133,8 @@ class FreeLight {
     double rise, kappa;  ///< factors of green and red in the depth equation
     double scattered;    ///< its last term
     double green;        ///< of the reference
+    double bright;       ///< of its pixels beside the dots
+    double middle_mm;    ///< depth of the free pad in the middle of the block
     double depth_mm;     ///< of the free pad
     double slope;        ///< of the equation, for a pad as high again
     double darkens;      ///< ln of green, for the same
@@ -93,9 +149,10 @@ class FreeLight {
                  const DepthReference<S>& reference,
                  Index row,
                  Index col) {
-    Block sum{row, col, 0, 0, 0, 0, 0, 0, 0};
+    Block sum{row, col, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
     const double n = static_cast<double>(width_ * width_);
+    double brightest = 0;
     for (Index k = 0; k < width_ * width_; ++k) {
       const Index i = row + k / width_, j = col + k % width_;
       const auto l = static_cast<double>(reference.depth(i, j));
@@ -111,10 +168,20 @@ class FreeLight {
       sum.kappa += fluid.kappa * static_cast<double>(reference.gain(i, j)) / n;
       sum.scattered += g * scattered_light(l, fluid.c_red_per_mm, ray) / n;
       sum.green += b / n;
+      brightest = (std::max)(brightest, b);
       sum.depth_mm += l / n;
       sum.slope += (delta * ray.path_factor * rise * b + g * w_slope) * l / n;
       sum.darkens += fluid.c_green_per_mm * ray.path_factor * l / n;
     }
+    double count = 0;
+    for (Index k = 0; k < width_ * width_; ++k) {
+      const std::size_t at = static_cast<std::size_t>((row + k / width_) * cols_ + col + k % width_);
+      const auto b = static_cast<double>(reference.green[at]);
+      sum.bright += b > 0.8 * brightest ? b : 0;
+      count += b > 0.8 * brightest ? 1 : 0;
+    }
+    sum.bright /= count;
+    sum.middle_mm = static_cast<double>(reference.depth(row + width_ / 2, col + width_ / 2));
     blocks_.push_back(sum);
   }
 

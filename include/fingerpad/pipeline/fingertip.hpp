@@ -188,7 +188,7 @@ class Fingertip {
     }
     measure_shape(touch);
     const bool begins =
-        light_ && !light_->is_known() && touch.contact.ok() && !touch.contact.in_contact();
+        light_ && !light_->is_known && touch.contact.ok() && !touch.contact.in_contact();
     if (begins && learn_light() > 0) {
       measure_shape(touch);  // in its own light
     }
@@ -228,7 +228,8 @@ class Fingertip {
 
   /// Returns what the light moved the depth of this frame by, in mm.
   double learn_light() {
-    const double mm = light_->learn(std::as_const(red_).view(), std::as_const(green_).view());
+    const double mm = light_->learn(std::as_const(red_).view(), std::as_const(green_).view(),
+                                    std::as_const(depth_mm_).view());
     estimate_depth_.set_light(light_->gains);
     return mm;
   }
@@ -244,7 +245,8 @@ class Fingertip {
     if (touch.contact.ok() && !touch.contact.in_contact() && !is_felt) {
       touch.depth_light_sd_mm = learn_light();
     } else {
-      touch.depth_light_sd_mm = light_->hold();
+      touch.depth_light_sd_mm =
+          light_->hold(std::as_const(green_).view(), std::as_const(depth_mm_).view());
     }
   }
 

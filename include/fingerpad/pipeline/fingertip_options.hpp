@@ -114,7 +114,7 @@ struct [[nodiscard]] FingertipResult {
 
   bool ok() const { return status == FingertipStatus::ok; }
   /// Whether light may put the depth wrong by more than 0.05 mm.
-  bool light_in_doubt() const { return depth_light_sd_mm > 0.05; }
+  bool light_in_doubt() const { return !(depth_light_sd_mm <= 0.05); }
 };
 
 }  // namespace v1

@@ -243,6 +243,10 @@ struct FingertipDots {
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
     touch.motion = motion(at_mm.view(), held.view(), slips, depth_noise_mm);
     follows = touch.motion.has_pose();
+    if (touch.motion.ok() && touch.light_in_doubt()) {
+      touch.motion.status = MotionStatus::doubtful;
+    }
+    touch.motion.position_sd_mm = std::hypot(touch.motion.position_sd_mm, touch.depth_light_sd_mm);
   }
 
   /// The load from a six-axis force, else from the look-up; unknown without both.
