@@ -12,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/dots/detail/dot_table.hpp"
@@ -264,15 +265,9 @@ class DotPrint {
     std::sort(shifts_.begin(), shifts_.end(), [](const DotIndex& a, const DotIndex& b) {
       return a.row * a.row + a.col * a.col < b.row * b.row + b.col * b.col;
     });
-    for (Index down = -2 * beyond; down <= 2 * beyond; ++down) {
-      for (Index right = -2 * beyond; right <= 2 * beyond; ++right) {
-        exposed_(down + 2 * beyond, right + 2 * beyond) =
-            count([&](Index i, Index j) { return kind_(i, j) == printed; }, blank, {down, right});
-        const bool still = down == 0 && right == 0;
-        bordered_ =
-            bordered_ && (still || exposed_(down + 2 * beyond, right + 2 * beyond) >= evidence);
-      }
-    }
+    bordered_ = std::all_of(shifts_.begin() + 1, shifts_.end(), [&](const DotIndex& shift) {
+      return exposed(shift) >= evidence;
+    });
   }
 
   /// Dots of the free pad.
@@ -305,15 +300,13 @@ class DotPrint {
   Answer labels_of(const SpotMap& spots, const std::vector<Place>& seeds_px, double max_off) const {
     const auto most = static_cast<double>((std::min)(count_, static_cast<Index>(spots.size())));
     const DotGrowth growth(free_, spots);
-    std::vector<Answer> guesses;
     Answer best;
     bool done = false;
     for (std::size_t k = 0; k < seeds_.size() && !done; ++k) {
-      guesses.push_back(grown(growth, seeds_[k], seeds_px[k], spots));
-      const Answer& guess = guesses.back();
+      Answer guess = grown(growth, seeds_[k], seeds_px[k], spots);
       const bool decides = best.ambiguous && !guess.ambiguous && guess.score == best.score;
       const bool better = guess.score > best.score || decides;
-      best = better ? guess : best;
+      best = better ? std::move(guess) : best;
       done = !best.ambiguous &&
              static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
     }
@@ -322,11 +315,6 @@ class DotPrint {
     };
     if (best.score <= 0 || best.ambiguous) {
       return best.score > 0 && enough() ? best : Answer{};
-    }
-    for (const Answer& other : guesses) {
-      if (static_cast<double>(other.score) >= nearly_as_good * static_cast<double>(best.score)) {
-        drop_where_other(best.labels, other.labels);
-      }
     }
     growth.drop_strangers(best.labels, max_off);
     return enough() ? best : Answer{};
@@ -339,10 +327,9 @@ class DotPrint {
     unknown,  ///< not in view
   };
   // Shares of the dots that have a label:
-  static constexpr double nearly_all = 0.96;       // the first guess is taken
-  static constexpr double min_explained = 0.9;     // below this, all dots are lost
-  static constexpr double nearly_as_good = 0.985;  // of the best score
-  static constexpr Index evidence = 3;             // as many dots against it refute a labelling
+  static constexpr double nearly_all = 0.96;    // the first guess is taken
+  static constexpr double min_explained = 0.9;  // below this, all dots are lost
+  static constexpr Index evidence = 3;          // as many dots against it refute a labelling
 
   /// Middles of blocks that are mostly printed: the one nearest to the middle of the print, and
   /// those farthest from it to four sides.
@@ -428,9 +415,13 @@ class DotPrint {
   /// Whether another shift is as possible as the smallest one: a jump of the print would have shown
   /// dots where nothing is printed, or the other shift misses fewer dots.
   bool is_rival(const DotIndex& other, const DotIndex& shift, const Table<char>& unseen) const {
-    return exposed_(other.row - shift.row + 2 * beyond, other.col - shift.col + 2 * beyond) >=
-               evidence ||
+    return exposed({other.row - shift.row, other.col - shift.col}) >= evidence ||
            missing(unseen, other) + evidence <= missing(unseen, shift);
+  }
+
+  /// Dots that would lie where nothing is printed if the print were moved by rows and columns.
+  Index exposed(const DotIndex& by) const {
+    return count([&](Index i, Index j) { return kind_(i, j) == printed; }, blank, by);
   }
 
   /// How many of some places fall on places of a kind if all are moved by rows and columns.
@@ -473,14 +464,6 @@ class DotPrint {
     return count([&](Index i, Index j) { return labels(i, j) >= 0; }, kind, by);
   }
 
-  static void drop_where_other(Labels& labels, const Labels& others) {
-    for (std::size_t k = 0; k < others.cells().size(); ++k) {
-      int& label = labels.cells()[k];
-      const int other = others.cells()[k];
-      label = label >= 0 && other >= 0 && label != other ? -1 : label;
-    }
-  }
-
   InView in_view_;
   Places free_;   ///< dots of the free pad, and those that would lie around them
   Places known_;  ///< the same without those that would lie where nothing is printed
@@ -489,8 +472,6 @@ class DotPrint {
   std::vector<DotIndex> shifts_;  ///< of rows and columns, the smallest first
   Index count_ = 0;
   std::vector<DotIndex> seeds_;
-  /// Dots that would lie where nothing is printed, by a shift of -2 beyond to 2 beyond.
-  Table<Index> exposed_{4 * beyond + 1, 4 * beyond + 1, 0};
 };
 
 }  // namespace detail

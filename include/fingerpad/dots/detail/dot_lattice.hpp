@@ -5,9 +5,9 @@
 // direction closer to the rows of the frame. The grid may be rotated, sheared, and slightly bent
 // from dot to dot, like a print on a dome.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "fingerpad/dots/detail/dot_labels.hpp"
@@ -18,7 +18,7 @@ inline namespace v1 {
 namespace detail {
 
 constexpr Index min_lattice_dots = 9;  // fewer may form a grid by chance
-constexpr double steps_alike = 0.2;    // as a fraction of their length
+constexpr double steps_alike = 0.2;    // a spot to where its neighbour's step ends, in steps
 
 /// Steps from a dot to the next one, along the rows and along the columns of a grid.
 struct LatticeSteps {
@@ -26,78 +26,31 @@ struct LatticeSteps {
   Place down{0, 0};
 };
 
-/// Steps from each spot to its nearest ones.
-inline std::vector<Place> steps_between(const std::vector<Place>& spots) {
-  constexpr std::size_t nearest = 6;
-  std::vector<Place> steps, around;
+/// The usual steps: medians over the spots of the step to the nearest one to the right, and of that
+/// to the nearest one below. O(spots^2) time.
+inline LatticeSteps lattice_steps(const std::vector<Place>& spots) {
+  std::array<std::vector<double>, 4> all;  // of both steps, x and y
   for (const Place& from : spots) {
-    around.clear();
+    std::array<Place, 2> nearest = {no_place(), no_place()};
     for (const Place& to : spots) {
-      if (&to != &from) {
-        around.push_back(to - from);
+      const Place step = to - from;
+      const bool right = step.x > std::abs(step.y), down = step.y >= std::abs(step.x);
+      Place& least = nearest[down ? 1 : 0];
+      if (&to != &from && (right || down) && !(squared_norm(least) <= squared_norm(step))) {
+        least = step;
       }
     }
-    const auto last =
-        around.begin() + static_cast<std::ptrdiff_t>((std::min)(nearest, around.size()));
-    std::partial_sort(around.begin(), last, around.end(), [](const Place& a, const Place& b) {
-      return squared_norm(a) < squared_norm(b);
-    });
-    steps.insert(steps.end(), around.begin(), last);
-  }
-  return steps;
-}
-
-/// Mean and number of similar steps, opposite ones included.
-struct CommonStep {
-  Place step{0, 0};
-  int count = 0;
-};
-
-/// The most frequent step among those that `allowed` accepts. Only some hundreds of candidates are
-/// tried: the steps of a grid are so frequent that one of them is among these.
-template <class Allowed>
-CommonStep most_common(const std::vector<Place>& steps, const Allowed& allowed) {
-  constexpr std::size_t max_tried = 500;
-  CommonStep best;
-  for (std::size_t k = 0; k < steps.size(); k += 1 + steps.size() / max_tried) {
-    const Place& one = steps[k];
-    if (!allowed(one)) {
-      continue;
-    }
-    const double near_sq = steps_alike * steps_alike * squared_norm(one);
-    CommonStep alike;
-    for (const Place& other : steps) {
-      const Place same_way = dot(other, one) < 0 ? -1 * other : other;
-      if (squared_norm(same_way - one) < near_sq) {
-        alike.step += same_way;
-        ++alike.count;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (is_finite(nearest[k / 2])) {
+        all[k].push_back(k % 2 == 0 ? nearest[k / 2].x : nearest[k / 2].y);
       }
     }
-    if (alike.count > best.count) {
-      best = {alike.step / alike.count, alike.count};
-    }
   }
-  return best;
-}
-
-inline std::optional<LatticeSteps> lattice_steps(const std::vector<Place>& spots) {
-  const std::vector<Place> all = steps_between(spots);
-  const CommonStep first = most_common(all, [](const Place&) { return true; });
-  const CommonStep second = most_common(all, [&](const Place& step) {
-    return std::abs(dot(step, first.step)) < 0.5 * norm(step) * norm(first.step) &&
-           norm(step) < 2 * norm(first.step);
-  });
-  if (second.count < 2) {
-    return std::nullopt;
+  std::array<double, 4> steps{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    steps[k] = all[k].empty() ? 0 : median_of(all[k].begin(), all[k].end());
   }
-  const bool first_is_right =
-      std::abs(first.step.x) * norm(second.step) >= std::abs(second.step.x) * norm(first.step);
-  LatticeSteps steps = first_is_right ? LatticeSteps{first.step, second.step}
-                                      : LatticeSteps{second.step, first.step};
-  steps.right = (steps.right.x < 0 ? -1 : 1) * steps.right;
-  const double area = steps.right.x * steps.down.y - steps.right.y * steps.down.x;
-  steps.down = (area < 0 ? -1 : 1) * steps.down;
-  return steps;
+  return {{steps[0], steps[1]}, {steps[2], steps[3]}};
 }
 
 /// The spot with the most neighbours on its four sides; of several, the one nearest to the middle.
@@ -195,14 +148,14 @@ inline Places lattice_of(const std::vector<Place>& spots) {
   if (spots.size() < static_cast<std::size_t>(min_lattice_dots) || spots.size() > max_spots) {
     return {};
   }
-  const auto steps = lattice_steps(spots);
-  if (!steps) {
+  const LatticeSteps steps = lattice_steps(spots);
+  const SpotMap map(spots);
+  const Place seed = map[lattice_seed(map, steps)];
+  const auto& [right, down] = steps;
+  const double area = right.x * down.y - right.y * down.x;
+  if (!(area > 0)) {
     return {};
   }
-  const SpotMap map(spots);
-  const Place seed = map[lattice_seed(map, *steps)];
-  const auto& [right, down] = *steps;
-  const double area = right.x * down.y - right.y * down.x;
   double up = 0, below = 0, before = 0, after = 0;
   for (const Place& spot : spots) {
     const Place off = spot - seed;
