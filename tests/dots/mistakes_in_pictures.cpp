@@ -176,7 +176,7 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes][figures]") {
          p.options.pattern.pitch_px = 48;
        },
        "right"},
-      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "59 beside them"},
+      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "76 beside them"},
   };
   check(mistakes, said_of_finder);
 }

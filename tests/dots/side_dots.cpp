@@ -289,6 +289,22 @@ TEST_CASE("side dots: a hidden, dirty or reflecting dot is absent, and comes bac
   CHECK(dots(bytes_of(loaded_picture())).found == 3 * count);
 }
 
+TEST_CASE("side dots: what is blurred into the dark beyond the rim is absent") {
+  const double near_px = 108;  // the first row leans and comes as near as 2.5 px
+  const auto picture = bytes_of(Print{}.picture());
+  SideDots dots(picture, camera, near_px * camera.pitch_mm, Print{}.rows());
+  REQUIRE(dots.ok());
+  const auto result = dots(picture);
+  CHECK(result.ok());
+  CHECK(result.found == seen(dots));
+  for (std::size_t k = 0; k < 3 * std::size_t(count); ++k) {
+    const double gap_px = near_px - norm(dots.free_px()[k] - middle);
+    INFO("dot " << k << ", " << gap_px << " px from the rim");
+    CHECK((!(gap_px < 3) || !is_finite(dots.px()[k])));
+    CHECK((!(gap_px > 5) || is_finite(dots.px()[k])));
+  }
+}
+
 TEST_CASE("side dots: without half of the dots none is told, and the next frame begins anew") {
   SideDots dots = free_dots();
   REQUIRE(dots(bytes_of(loaded_picture())).ok());

@@ -4,8 +4,8 @@
 // Rows of dots printed around the rim of a pad, beside a printed grid or without one. On the free
 // pad each row is a ring; from frame to frame its dots are followed like those of dot_follower.hpp:
 // each is expected where its last motion and its neighbours' motion put it, and its disc, deformed
-// as its neighbours and the clamped rim say, is fitted to the pixels. What is hidden, merges or
-// reflects is lost, not guessed.
+// as its neighbours and the clamped rim say, is fitted to the pixels. What is hidden, merges,
+// reflects or is blurred into the rim is lost, not guessed.
 //
 //   const SideRow rows[] = {{72, 2, 0.5, 0}, {72, 4, 0.5, pi / 72}, {72, 6, 0.5, 0}};
 //   SideDots side(green_of_free_frame, camera, base_radius_mm, rows);
@@ -87,13 +87,14 @@ class SideDots {
     }
     DotFollowerResult result;
     result.expected = dots_.count();
-    result.found = dots_.look(as_view(image));
-    const bool good = 2 * result.found >= result.expected;
+    const bool good = 2 * dots_.look(as_view(image)) >= result.expected;
     result.status = good ? DotFollowerStatus::ok : DotFollowerStatus::lost;
     dots_.keep(good);
     for (std::size_t k = 0; k < px_.size(); ++k) {
-      px_[k] = dots_[k].found ? dots_[k].place : detail::MarkFollower::missing();
-      sd_px_[k] = dots_[k].found ? dots_[k].sd_px : not_a_number<double>();
+      const bool found = dots_[k].found && is_clear_of_rim(dots_[k], rim_px_[k]);
+      px_[k] = found ? dots_[k].place : detail::MarkFollower::missing();
+      sd_px_[k] = found ? dots_[k].sd_px : not_a_number<double>();
+      result.found += found ? 1 : 0;
     }
     if (!good) {
       dots_.expect([](std::size_t) { return detail::MarkFollower::missing(); });
@@ -126,6 +127,14 @@ class SideDots {
  private:
   using Rings = detail::SideRings<SideRow>;
   using Mark = detail::MarkFollower::Mark;
+
+  /// Whether the blurred edge of a disc ends before that of the rim, beyond which it is dark: the
+  /// fit would take that for a slope of the light and put the center inward.
+  bool is_clear_of_rim(const Mark& m, const Point& rim_px) const {
+    const Point gap = rim_px - m.place;
+    const double half_px = std::hypot(dot(m.map.ja, gap), dot(m.map.jb, gap)) / norm(gap);
+    return norm(gap) > half_px + 2 * dots_.edge_px();
+  }
 
   /// A row of dots on its ring.
   struct Ring {
@@ -173,6 +182,9 @@ class SideDots {
     std::size_t first = 0;
     for (std::size_t r = 0; r < radii.size(); ++r) {
       const Ring ring{rings, rings.rows[r], radii[r]};
+      for (std::size_t k = 0; k < ring.count; ++k) {
+        rim_px_.push_back(rings.at(rings.base_radius_mm, Rings::angle(ring.row, double(k))));
+      }
       const std::size_t seen = drop_strange(ring, first);
       if (2 * seen < ring.count) {
         return detail::print("the row of side dots at %g mm from the rim shows %d of %d dots",
@@ -250,6 +262,7 @@ class SideDots {
 
   Index image_rows_, image_cols_;
   detail::MarkFollower dots_{18};  ///< the dots, then the rim
+  std::vector<Point> rim_px_;      ///< nearest to each dot of the free pad
   std::vector<Point> px_;
   std::vector<double> sd_px_;
   std::string refusal_;

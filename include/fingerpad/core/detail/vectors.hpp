@@ -1,14 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vectors of memory that is taken once, and vectors that copies share.
+// Vectors of memory that is taken once, vectors that copies share, and a median.
+#include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
+
+#include "fingerpad/core/scalar.hpp"
 
 namespace fingerpad {
 inline namespace v1 {
 namespace detail {
+
+/// The upper one of an even number, NaN of none. Reorders the values.
+inline double median(std::span<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.empty() ? not_a_number<double>() : *middle;
+}
 
 /// A vector whose copies keep its capacity: a copied state must not allocate during a frame, but a
 /// copied std::vector drops the reserved capacity.

@@ -87,7 +87,7 @@ class DotGrowth {
     if (sorted.empty()) {
       return;
     }
-    const double limit = std::fmax(max_off, strange * median_of(sorted.begin(), sorted.end()));
+    const double limit = std::fmax(max_off, strange * median(sorted));
     for (std::size_t k = 0; k < misfits.cells().size(); ++k) {
       labels.cells()[k] = misfits.cells()[k] > limit ? -1 : labels.cells()[k];
     }
@@ -265,9 +265,8 @@ class DotPrint {
     std::sort(shifts_.begin(), shifts_.end(), [](const DotIndex& a, const DotIndex& b) {
       return a.row * a.row + a.col * a.col < b.row * b.row + b.col * b.col;
     });
-    bordered_ = std::all_of(shifts_.begin() + 1, shifts_.end(), [&](const DotIndex& shift) {
-      return exposed(shift) >= evidence;
-    });
+    bordered_ = std::all_of(shifts_.begin() + 1, shifts_.end(),
+                            [&](const DotIndex& shift) { return exposed(shift) >= evidence; });
   }
 
   /// Dots of the free pad.
@@ -449,15 +448,7 @@ class DotPrint {
   }
   /// How many printed dots are not seen then.
   Index missing(const Table<char>& unseen, const DotIndex& by) const {
-    Index number = 0;
-    for (Index i = 0; i < unseen.rows(); ++i) {
-      for (Index j = 0; j < unseen.cols(); ++j) {
-        const bool is_printed =
-            kind_.contains(i + by.row, j + by.col) && kind_(i + by.row, j + by.col) == printed;
-        number += is_printed ? unseen(i, j) : 0;
-      }
-    }
-    return number;
+    return count([&](Index i, Index j) { return unseen(i, j) != 0; }, printed, by);
   }
 
   Index count(const Labels& labels, Kind kind, const DotIndex& by) const {

@@ -48,7 +48,7 @@ inline LatticeSteps lattice_steps(const std::vector<Place>& spots) {
   }
   std::array<double, 4> steps{};
   for (std::size_t k = 0; k < 4; ++k) {
-    steps[k] = all[k].empty() ? 0 : median_of(all[k].begin(), all[k].end());
+    steps[k] = all[k].empty() ? 0 : median(all[k]);
   }
   return {{steps[0], steps[1]}, {steps[2], steps[3]}};
 }
@@ -116,7 +116,7 @@ inline double pitch_of(const Places& dots) {
       }
     }
   }
-  return lengths.empty() ? 0 : median_of(lengths.begin(), lengths.end());
+  return lengths.empty() ? 0 : median(lengths);
 }
 
 /// Median distance of a dot from the midpoint of its neighbours on both sides, in pitches. It
@@ -136,7 +136,7 @@ inline double unevenness(const Places& dots) {
       }
     }
   }
-  return off.empty() ? 0.0 : median_of(off.begin(), off.end()) / pitch_of(dots);
+  return off.empty() ? 0.0 : median(off) / pitch_of(dots);
 }
 
 /// The spots that lie in rows and columns, at their row and column; empty if there is no such grid.

@@ -128,7 +128,7 @@ class SpotFinder {
       radii.push_back(std::sqrt(count / CV_PI));
       contrasts.push_back(middle);
     }
-    return {median_of(radii.begin(), radii.end()), median_of(contrasts.begin(), contrasts.end())};
+    return {median(radii), median(contrasts)};
   }
 
  private:
@@ -207,15 +207,15 @@ class SpotFinder {
 
   double median_light(const cv::Mat_<float>& light) const {
     const int step = 1 + light.rows / 50;  // some thousand cells suffice
-    std::vector<float> inside;
+    std::vector<double> inside;
     for (int i = 0; i < light.rows; i += step) {
       for (int j = 0; j < light.cols; j += step) {
         if (pad_(i, j) > 0) {
-          inside.push_back(light(i, j));
+          inside.push_back(static_cast<double>(light(i, j)));
         }
       }
     }
-    return inside.empty() ? 0.0 : median_of(inside.begin(), inside.end());
+    return inside.empty() ? 0.0 : median(inside);
   }
 
   /// Light of the background: the mean around each cell without everything darker than its
@@ -282,6 +282,7 @@ class SpotFinder {
     cv::subtract(dark, seen.around, response);
     const int reach = (std::max)(static_cast<int>(std::lround(0.8 * radius)), 1);
     const auto least = static_cast<float>(0.25 * look_.min_contrast);
+    cv::dilate(response, seen.around, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
     std::vector<Place> found;
     const double near_px = fine_ * (reach + 0.5);
     const auto is_beside = [&](const Place& other, const Place& peak) {
@@ -290,7 +291,7 @@ class SpotFinder {
     for (int i = 0; i < response.rows; ++i) {
       const float* here = response[i];
       for (int j = 0; j < response.cols; ++j) {
-        if (here[j] > least && is_peak(response, i, j, reach)) {
+        if (here[j] > least && here[j] == seen.around(i, j)) {  // none within reach is higher
           // Neighbouring peak pixels of equal height are one spot.
           const Place peak{fine_ * (j + 0.5) - 0.5, fine_ * (i + 0.5) - 0.5};
           const auto above = std::find_if(found.rbegin(), found.rend(), [&](const Place& other) {
@@ -303,24 +304,6 @@ class SpotFinder {
       }
     }
     return found;
-  }
-
-  /// Whether nothing within `reach` of a pixel is higher.
-  static bool is_peak(const cv::Mat_<float>& response, int row, int col, int reach) {
-    const float here = response(row, col);
-    const int left = (std::max)(col - reach, 0);
-    const int right = (std::min)(col + reach, response.cols - 1);
-    // Nearest rows first: most pixels have a higher one beside them.
-    for (int away = 0; away <= reach; ++away) {
-      for (const int i : {row - away, row + away}) {
-        if (i >= 0 && i < response.rows &&
-            std::any_of(response[i] + left, response[i] + right + 1,
-                        [&](float other) { return other > here; })) {
-          return false;
-        }
-      }
-    }
-    return true;
   }
 
   void read(const cv::Mat& frame,
@@ -354,6 +337,7 @@ class SpotFinder {
     constexpr auto darkest = static_cast<float>(min_light);
     for (int i = box.y; i < box.y + box.height; ++i) {
       const Pixel* pixel = frame.ptr<Pixel>(i) + box.x * channels;
+      const std::uint8_t* inside = masked ? where_[i] + box.x : nullptr;
       float* dark = patch.row(i);
       const float first = ground.at(static_cast<float>(box.x), static_cast<float>(i));
       for (int j = 0; j < box.width; ++j, pixel += channels) {
@@ -361,13 +345,8 @@ class SpotFinder {
                             weight[1] * static_cast<float>(pixel[second]) +
                             weight[2] * static_cast<float>(pixel[third]);
         const float around = first + ground.right * static_cast<float>(j);
-        dark[j] = light <= brightest && around > darkest ? 1 - light / around : 0.0F;
-      }
-      if (masked) {
-        const std::uint8_t* inside = where_[i] + box.x;
-        for (int j = 0; j < box.width; ++j) {
-          dark[j] = inside[j] != 0 ? dark[j] : 0.0F;
-        }
+        const bool counts = light <= brightest && around > darkest && (!masked || inside[j] != 0);
+        dark[j] = counts ? 1 - light / around : 0.0F;
       }
     }
   }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
@@ -52,14 +53,6 @@ class Table {
 };
 
 using Places = Table<Place>;
-
-/// Median of at least one value; the upper one of an even number. Reorders the values.
-template <class Iterator>
-double median_of(Iterator first, Iterator last) {
-  const Iterator middle = first + (last - first) / 2;
-  std::nth_element(first, middle, last);
-  return static_cast<double>(*middle);
-}
 
 /// Nearest-neighbour search among the spots of a frame, sorted by y. The spots must outlive the
 /// map. A query takes O(log spots + spots in a strip of height 2 reach_px) time.
@@ -130,7 +123,7 @@ class Neighbours {
     if (farthest < 0.01 * scale * scale) {
       return plane.middle;
     }
-    const Place middle = median();
+    const Place middle = middle_of_values();
     for (std::size_t k = 0; k < count_; ++k) {
       const double off_sq = squared_norm(values_[k] - middle) / (scale * scale);
       weights[k] /= 1 + off_sq * off_sq;
@@ -171,14 +164,13 @@ class Neighbours {
             (at_bc * b + by_rc * br + by_cc * bc) / det};
   }
 
-  Place median() const {
+  Place middle_of_values() const {
     std::array<double, most> x{}, y{};
     for (std::size_t k = 0; k < count_; ++k) {
       x[k] = values_[k].x;
       y[k] = values_[k].y;
     }
-    return {median_of(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(count_)),
-            median_of(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(count_))};
+    return {median({x.data(), count_}), median({y.data(), count_})};
   }
 
   std::size_t count_ = 0;

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/dots/detail/dot_locator.hpp"
@@ -23,16 +24,6 @@
 namespace fingerpad {
 inline namespace v1 {
 namespace detail {
-
-/// NaN of none; reorders the values.
-inline double median(std::vector<double>& values) {
-  if (values.empty()) {
-    return not_a_number<double>();
-  }
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Fill it: learn(), drop() and add_still() as needed, connect(). Then look() and keep() once a
 /// frame.
@@ -420,9 +411,8 @@ class MarkFollower {
         residuals_[count++] = marks_[k].residual_ratio;
       }
     }
-    const auto first = residuals_.begin(), middle = first + std::ptrdiff_t(count / 2);
-    std::nth_element(first, middle, first + std::ptrdiff_t(count));
-    noise_ = count > 0 && 2 * count >= order_.size() ? (std::max)(*middle, 1.0) : 0;
+    const double usual = median({residuals_.data(), count});
+    noise_ = count > 0 && 2 * count >= order_.size() ? (std::max)(usual, 1.0) : 0;
   }
 
   /// Neighbours move alike. Of the parts of the print within which they do, the largest is kept, or
@@ -471,8 +461,8 @@ class MarkFollower {
   }
 
   std::size_t around_;
-  double noise_ = 0;      ///< residuals of the frames to that of the free pad's picture; 0: unknown
-  double edge_px_ = 2;    ///< half width of the blurred edge
+  double noise_ = 0;    ///< residuals of the frames to that of the free pad's picture; 0: unknown
+  double edge_px_ = 2;  ///< half width of the blurred edge
   std::vector<Mark> marks_;
   std::vector<std::size_t> order_;       ///< the marks that exist and move, border first
   std::vector<std::size_t> neighbours_;  ///< around_ of each mark
