@@ -27,6 +27,7 @@ for column, name in zip(axes.T, frames):
     frame = np.array(Image.open(name))
     depth, status, _ = estimate(frame[..., 0], frame[..., 1])
     mask, contact = region(depth)
+    print(f"{name.stem}: {contact.area_mm2:.0f} mm^2 in contact")
     column[0].imshow(np.clip(frame * 4.0 / 255, 0, 1))
     if contact.in_contact:
         column[0].contour(mask, levels=[127], colors="white", linewidths=1)
