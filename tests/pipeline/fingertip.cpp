@@ -736,7 +736,6 @@ class FreeThenPressed {
                              test::rim_scenes().end(),
                              [&](const auto& one) { return one.name == name; })),
         lattice_mm_(size * size),
-        touching_(lattice_mm_.size(), 0),
         wrench(options(beside_px)) {
     const fingerpad::FreePad<double> pad(scene_.cap);
     const auto meridian = pad.meridian(free_mpa() / scene_.modulus_n_per_mm);
@@ -770,13 +769,13 @@ class FreeThenPressed {
       const auto at = free.dots_mm[k] + share * (pressed.dots_mm[k] - free.dots_mm[k]);
       marks.push_back({.px = seen(at, shift_px + (k == 0 ? stray_px : 0)), .sd_px = 0.06});
     }
-    std::vector<fingerpad::Point2<double>> lattice(touching_.size(), {test::nan, test::nan});
+    std::vector<fingerpad::Point2<double>> lattice(size * size, {test::nan, test::nan});
     for (std::size_t k = 0; k < lattice.size() && share == 0; ++k) {
       lattice[k] = seen(lattice_mm_[k], shift_px);
     }
     const fingerpad::StridedView<const fingerpad::Point2<double>> dots(lattice.data(), size, size,
                                                                        size);
-    wrench.read(dots, {touching_.data(), size, size, size}, marks, {}, 1);
+    wrench.read(dots, marks, {}, 1);
     const double mpa = free.pressure_mpa + share * (pressed.pressure_mpa - free.pressure_mpa);
     auto result = wrench(mpa);
     if (!finds_contact) {
@@ -800,7 +799,6 @@ class FreeThenPressed {
   static constexpr fingerpad::Index size = 21;
   const test::RimScene& scene_;
   std::vector<fingerpad::Point3<double>> lattice_mm_;
-  std::vector<std::uint8_t> touching_;
   test::Random random_{7};
 
  public:

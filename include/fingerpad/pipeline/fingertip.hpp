@@ -199,7 +199,7 @@ class Fingertip {
       (*look_up_)(touch);
     }
     if (wrench_) {
-      wrench_->read(dots, dots_in_contact(), side_dots, std::as_const(mask_).view(), pad_->step);
+      wrench_->read(dots, side_dots, std::as_const(mask_).view(), pad_->step);
       measure_wrench(pressure_mpa, touch);
     }
     if (light_ && !begins) {

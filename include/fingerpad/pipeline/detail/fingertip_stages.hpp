@@ -309,7 +309,6 @@ struct FingertipWrench {
   struct Dot {
     Point2<double> px = {};  // in this frame; NaN: not found
     double sd_px = 0;
-    bool touches = false;
     Place first, now;
     int frames = 0;  // learnt from, at most free_frames
   };
@@ -320,7 +319,7 @@ struct FingertipWrench {
   Point2<double> axis_px = {0, 0};  // from the camera's
   Index rows, cols;                 // of the printed grid
   std::vector<Dot> dots;            // the printed grid, then the rows around it
-  std::vector<std::uint8_t> side_touching;
+  std::vector<std::uint8_t> touching;  // of each dot, in this frame
   ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
@@ -334,45 +333,38 @@ struct FingertipWrench {
         dot_sd_px(o.dot_sd_px) {
     require("FingertipOptions",
             {{"dot_sd_px", o.dot_sd_px, positive}, {"side_dots", o.side_dots, within(0, 100000)}});
-    side_touching.resize(static_cast<std::size_t>(o.side_dots));
-    dots.resize(static_cast<std::size_t>(rows * cols) + side_touching.size());
+    dots.resize(static_cast<std::size_t>(rows * cols + o.side_dots));
+    touching.resize(dots.size());
     marks = ReservedVector<fingerpad::Mark>(dots.size());
   }
 
-  /// Takes the dots of a frame. `touching` is of the printed ones and has their size; `mask` has
-  /// the contact in samples of `step` pixels.
+  /// Takes the dots of a frame; `mask` has the contact in samples of `step` pixels.
   template <class Dots>
   void read(const Dots& dots_px,
-            const StridedView<const std::uint8_t>& touching,
             std::span<const fingerpad::Mark> side_dots,
             const StridedView<const std::uint8_t>& mask,
             int step) {
     using Traits = point_traits<cell_t<Dots>>;
     Dot* to = dots.data();
-    for (Index i = 0; i < touching.rows(); ++i) {
-      for (Index j = 0; j < touching.cols(); ++j, ++to) {
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j, ++to) {
         const cell_t<Dots> p = dots_px(i, j);
         to->px = {static_cast<double>(Traits::x(p)), static_cast<double>(Traits::y(p))};
         to->sd_px = dot_sd_px;
-        to->touches = touching(i, j) != 0;
       }
     }
-    const std::span<Dot> sides(to, side_touching.size());
+    const std::span<Dot> sides(to, dots.data() + dots.size());
     for (std::size_t k = 0; k < sides.size(); ++k) {
       constexpr double none = not_a_number<double>();
       sides[k].px = k < side_dots.size() ? side_dots[k].px : Point2<double>{none, none};
       sides[k].sd_px = k < side_dots.size() ? side_dots[k].sd_px : none;
     }
-    const auto count = static_cast<Index>(sides.size());
+    const auto count = static_cast<Index>(dots.size());
     const LazyView in_samples(count, 1, [&](Index k, Index) {
-      const Point2<double>& px = sides[static_cast<std::size_t>(k)].px;
+      const Point2<double>& px = dots[static_cast<std::size_t>(k)].px;
       return Point2<double>{sampled_px(px.x, step), sampled_px(px.y, step)};
     });
-    (void)contact_at_dots(in_samples, mask,
-                          StridedView<std::uint8_t>(side_touching.data(), count, 1, 1));
-    for (std::size_t k = 0; k < sides.size(); ++k) {
-      sides[k].touches = side_touching[k] != 0;
-    }
+    (void)contact_at_dots(in_samples, mask, StridedView<std::uint8_t>(touching.data(), count, 1, 1));
   }
 
   /// Of the dots that nothing touches.
@@ -415,8 +407,9 @@ struct FingertipWrench {
  private:
   WrenchResult fit(double pressure_mpa, Place Dot::*place) {
     marks.clear();
-    for (const Dot& dot : dots) {
-      if (!dot.touches && dot.frames > 0) {
+    for (std::size_t k = 0; k < dots.size(); ++k) {
+      const Dot& dot = dots[k];
+      if (touching[k] == 0 && dot.frames > 0) {
         const Place& at = dot.*place;
         marks.push_back({at.arc_mm, at.azimuth_rad, dot.px - axis_px,
                          dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
