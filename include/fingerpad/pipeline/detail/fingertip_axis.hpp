@@ -24,8 +24,8 @@ struct AxisOfGrid {
   double sd_mm = not_a_number<double>();  ///< of each coordinate, by what the fit leaves over
 };
 
-/// A free pad is the same all around its axis, so a square lattice on it is seen drawn out along the
-/// radii, about one point: a dot at w of the lattice, v = w - apex, is seen at
+/// A free pad is the same all around its axis, so a square lattice on it is seen drawn out along
+/// the radii, about one point: a dot at w of the lattice, v = w - apex, is seen at
 ///   axis + v (k0 + k1 |v|^2 + ... + k4 |v|^8),
 /// all complex; by Gauss and Newton's method in the apex. Neither shape nor rubber need be known. A
 /// lattice that is not square, or dots printed off their places, make the sd larger.
@@ -81,8 +81,8 @@ AxisOfGrid axis_of_grid(const Camera<double>& camera, const Dots& dots_px) {
       return {};
     }
     if (step == 0) {  // seen in proportion, about the camera's axis
-      const auto linear = NormalEquations<double, 4>(sums.template corner<4>())
-                              .solve(sums.template column<4>(n));
+      const auto linear =
+          NormalEquations<double, 4>(sums.template corner<4>()).solve(sums.template column<4>(n));
       k[0] = {linear[0], linear[1]};
       apex = -Complex(linear[2], linear[3]) / k[0];
       continue;

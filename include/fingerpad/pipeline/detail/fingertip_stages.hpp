@@ -316,9 +316,9 @@ struct FingertipWrench {
 
   Wrench<> wrench;
   Camera<double> camera;
-  Point2<double> axis_px = {0, 0};  // from the camera's
-  Index rows, cols;                 // of the printed grid
-  std::vector<Dot> dots;            // the printed grid, then the rows around it
+  Point2<double> axis_px = {0, 0};     // from the camera's
+  Index rows, cols;                    // of the printed grid
+  std::vector<Dot> dots;               // the printed grid, then the rows around it
   std::vector<std::uint8_t> touching;  // of each dot, in this frame
   ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
@@ -364,7 +364,8 @@ struct FingertipWrench {
       const Point2<double>& px = dots[static_cast<std::size_t>(k)].px;
       return Point2<double>{sampled_px(px.x, step), sampled_px(px.y, step)};
     });
-    (void)contact_at_dots(in_samples, mask, StridedView<std::uint8_t>(touching.data(), count, 1, 1));
+    (void)contact_at_dots(in_samples, mask,
+                          StridedView<std::uint8_t>(touching.data(), count, 1, 1));
   }
 
   /// Of the dots that nothing touches.
