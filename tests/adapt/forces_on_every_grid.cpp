@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Dots, flags, depths and readings in every kind of grid: every method that reads them gives the
 // same result to the bit.
-// Depth, neighbour light, contact region and stick ratio have tests of their own.
+// Depth, neighbour light, contact region and stick ratio have tests of their own; the object's motion
+// and the shift of a contact read dots as the stick ratio does.
 #include <cmath>
 
 #include "fingerpad/contact/equivalent_flat_area.hpp"
@@ -12,8 +13,6 @@
 #include "fingerpad/force/traction.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/image/curvature.hpp"
-#include "fingerpad/motion/contact_shift.hpp"
-#include "fingerpad/motion/object_motion.hpp"
 #include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/segment_equilibrium.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
@@ -35,55 +34,6 @@ bool same(const Vector& a, const Vector& b) {
 }
 
 }  // namespace
-
-TEST_CASE("motion of the object from every grid", "[adapt]") {
-  const test::TractionScene& before = test::traction_scenes()[1];
-  const test::TractionScene& after = test::traction_scenes()[2];
-  ObjectMotion<> begun(before.dots.rows(), before.dots.cols());
-  (void)begun(before.dots, before.contact);
-  auto motion = begun;
-  const auto truth = motion(after.dots, after.contact);
-  REQUIRE(truth.ok());
-  int grids = 0;
-  const auto check = [&](const auto& dots, const auto& contact) {
-    auto copy = begun;
-    const auto r = copy(dots, contact);
-    ++grids;
-    CHECK(r.status == truth.status);
-    CHECK(same(r.pose.translation_mm, truth.pose.translation_mm));
-    CHECK(same(r.position_mm, truth.position_mm));
-    CHECK(same_bits(r.angles.z_rad, truth.angles.z_rad));
-  };
-  from_every_grid<Vector>(after.dots, [&](const auto& dots) { check(dots, after.contact); });
-  from_every_grid<unsigned char>(after.contact,
-                                 [&](const auto& flags) { check(after.dots, flags); });
-  CHECK(grids > 20);
-}
-
-TEST_CASE("shift of the contact from every grid", "[adapt]") {
-  const test::TractionScene& scene = test::traction_scenes()[2];
-  const auto flat = [](const test::Dots& dots) {
-    test::Image<Point2<double>> out(dots.rows(), dots.cols());
-    for (std::size_t k = 0; k < dots.cells.size(); ++k) {
-      out.cells[k] = {dots.cells[k].x, dots.cells[k].y};
-    }
-    return out;
-  };
-  const auto free = flat(test::traction_scenes()[0].dots), now = flat(scene.dots);
-  ContactShift<> shift(free);
-  const auto truth = shift(now, scene.contact);
-  const auto check = [&](const auto& from, const auto& dots, const auto& contact) {
-    ContactShift<> other(from);
-    const auto r = other(dots, contact);
-    CHECK(same_bits(r.displacement.x, truth.displacement.x));
-    CHECK(same_bits(r.displacement.y, truth.displacement.y));
-    CHECK(same_bits(r.rotation_rad, truth.rotation_rad));
-  };
-  CHECK(is_finite(truth.displacement.x));
-  from_every_grid<Point2<double>>(free, [&](const auto& from) { check(from, now, scene.contact); });
-  from_every_grid<Point2<double>>(now, [&](const auto& dots) { check(free, dots, scene.contact); });
-  from_every_grid<unsigned char>(scene.contact, [&](const auto& f) { check(free, now, f); });
-}
 
 TEST_CASE("traction from every grid", "[adapt]") {
   const test::TractionScene& scene = test::traction_scenes()[3];
