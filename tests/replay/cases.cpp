@@ -308,6 +308,7 @@ TEST_CASE("cases: frames that are not like the free pad say so, and are no slip"
   for (const test::Line& line : recording.table("slide.csv")) {
     const bool is_other = line.at("frame") == "4" || line.at("frame") == "11";
     CHECK((line.at("slide_status") == "not of this pad") == is_other);
+    CHECK(line.at("contact_area_px").empty() == is_other);
   }
 }
 

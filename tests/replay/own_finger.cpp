@@ -9,6 +9,7 @@
 #include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 
 #include "calibrate/calibrations.hpp"
 #include "calibrate/shape.hpp"
@@ -229,6 +230,24 @@ TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
   const auto report = calibrated(scratch.path());
   CHECK(report.verdict == calibrate::Verdict::doubtful);
   CHECK(report.because.find("press 2 is not where") != std::string::npos);
+}
+
+TEST_CASE("a finger of one's own: the target may be cut by the picture", "[own]") {
+  const test::ScratchFolder scratch;
+  const cv::Rect part(0, 35, size_px, 90);  // the outer rows lie 48 px from the middle
+  for (const auto& [name, raised_mm] : {std::pair("plate", 0.0), {"plate_raised", 10.0}}) {
+    fs::create_directories(scratch.path() / name);
+    replay::write_png(scratch.path() / name / "0.png", target(raised_mm)(part).clone());
+  }
+  calibrate::DotPlate plate;
+  plate.rows = plate.cols = 9;
+  plate.pitch_mm = 3;
+  plate.raised_mm = 10;
+  plate.refractive_index = camera.refractive_index;
+  const auto outcome = calibrate::camera(scratch.path(), plate);
+  const auto& found = outcome.sections.at("camera");
+  CHECK(found.at("plate_distance_mm").get<double>() == Approx(50).margin(0.5));
+  CHECK(found.at("center_px").at(1).get<double>() == Approx(79.1 - 35).margin(0.1));
 }
 
 TEST_CASE("a finger of one's own: the free shape from touches", "[own]") {

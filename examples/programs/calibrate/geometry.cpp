@@ -22,26 +22,42 @@ namespace {
 
 using fingerpad::Point2;
 
+/// The dots of the target, or of as many rows and columns around its middle as the picture holds.
 std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
-  fingerpad::DotFinderOptions options;
-  options.pattern.rows = plate.rows;
-  options.pattern.cols = plate.cols;
-  const fingerpad::DotFinder finder(read_pictures(folder, plate.format()).front(), options);
-  const auto found = finder.ok() ? count_present(finder.free_px()) : 0;
-  if (found != plate.rows * plate.cols) {
-    replay::fail(folder, std::to_string(found) + " of " + std::to_string(plate.rows) + " x " +
-                             std::to_string(plate.cols) +
-                             " dots were found; all must be in the image, sharp and evenly lit");
-  }
-  std::vector<PlateDot> dots;
-  for (int i = 0; i < plate.rows; ++i) {
-    for (int j = 0; j < plate.cols; ++j) {
-      dots.push_back({{(j - (plate.cols - 1) / 2.0) * plate.pitch_mm,
-                       (i - (plate.rows - 1) / 2.0) * plate.pitch_mm},
-                      finder.free_px()(i, j)});
+  const cv::Mat picture = read_pictures(folder, plate.format()).front();
+  const fingerpad::Point2<double> middle_px = {(picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0};
+  for (int out = 0; out <= plate.rows + plate.cols; out += 2) {
+    for (int out_rows = 0; out_rows <= out; out_rows += 2) {
+      const int rows = plate.rows - out_rows, cols = plate.cols - (out - out_rows);
+      if (rows < 5 || cols < 5) {
+        continue;
+      }
+      fingerpad::DotFinderOptions options;
+      options.pattern.rows = rows;
+      options.pattern.cols = cols;
+      const fingerpad::DotFinder finder(picture, options);
+      if (!finder.ok() || count_present(finder.free_px()) != rows * cols) {
+        continue;
+      }
+      const auto& px = finder.free_px();
+      const Point2<double> pitch_px = px(rows / 2, cols / 2 + 1) - px(rows / 2, cols / 2);
+      if (out > 0 && norm(px(rows / 2, cols / 2) - middle_px) > norm(pitch_px) / 2) {
+        continue;  // of a target that is cut, another row may have been taken for the middle one
+      }
+      std::vector<PlateDot> dots;
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < cols; ++j) {
+          dots.push_back(
+              {{(j - (cols - 1) / 2.0) * plate.pitch_mm, (i - (rows - 1) / 2.0) * plate.pitch_mm},
+               px(i, j)});
+        }
+      }
+      return dots;
     }
   }
-  return dots;
+  replay::fail(folder, "no " + std::to_string(plate.rows) + " x " + std::to_string(plate.cols) +
+                           " dots were found, nor 5 x 5 or more of them around the middle of the "
+                           "picture; they must be sharp and evenly lit");
 }
 
 /// Least squares of N parameters by normal equations, which are well conditioned here: all lengths

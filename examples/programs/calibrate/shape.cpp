@@ -362,7 +362,7 @@ Outcome shape(const Path& recording, const Path& sensor_file, const PadSize& giv
         "the ball touched the pad out to %.1f of %.1f mm only, beyond which a pad without "
         "rubber is unknown: touch with the ball's center beyond the rim",
         fit.reach_mm, base_mm);
-    report.doubt(given.no_rubber && fit.reach_mm < 0.75 * base_mm, where);
+    report.doubt(given.no_rubber && fit.reach_mm < 0.8 * base_mm, where);
     report.doubt(fit.residual_mm > 0.1,
                  "the touches deviate from the shape by more than 0.1 mm: touch more gently, or "
                  "give a depth map (reference_depth.tiff) instead");

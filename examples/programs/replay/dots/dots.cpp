@@ -81,8 +81,9 @@ fingerpad::DotFinder finder_of(const std::filesystem::path& folder,
 
 }  // namespace
 
+constexpr double nearest_mm = 1.5;  // nearer, the clamp bends the sheet and the rim blurs a dot
+
 std::optional<fingerpad::SideDots> side_dots_of(const Sensor& sensor, const cv::Mat& free_frame) {
-  constexpr double nearest_mm = 1.5;  // nearer, the clamp bends the sheet and the rim blurs a dot
   std::vector<fingerpad::SideRow> rows;
   if (sensor.rim) {
     std::copy_if(sensor.rim->side_rows.begin(), sensor.rim->side_rows.end(),
@@ -101,10 +102,14 @@ fingerpad::DotFinderOptions print_of(const Sensor& sensor,
   fingerpad::DotFinderOptions options;
   options.where = cv::Mat_<uchar>(reference_depth.size(), uchar{0});
   std::vector<float> depths_mm;
+  float least_mm = 0;  // lower are dots of a row that is too near the rim, and no print
+  for (const auto& row : sensor.rim ? sensor.rim->side_rows : std::vector<fingerpad::SideRow>()) {
+    least_mm = row.arc_mm < nearest_mm ? std::max(least_mm, float(1.25 * row.arc_mm)) : least_mm;
+  }
   for (int i = 0; i < reference_depth.rows; ++i) {
     for (int j = 0; j < reference_depth.cols; ++j) {
       if (std::isfinite(reference_depth(i, j))) {
-        options.where(i, j) = 1;
+        options.where(i, j) = reference_depth(i, j) < least_mm ? 0 : 1;
         depths_mm.push_back(reference_depth(i, j));
       }
     }

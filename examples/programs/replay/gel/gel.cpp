@@ -62,7 +62,8 @@ void GelReplay::operator()(int frame,
 
 void GelReplay::write_row(const GelScene& row) {
   const GelFrame& seen = row.seen;
-  table_ << row.frame << ',' << row.time_s << ',' << seen.contact.contact_px << ','
+  const std::string area = seen.contact.ok() ? std::to_string(seen.contact.contact_px) : "";
+  table_ << row.frame << ',' << row.time_s << ',' << area << ','
          << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
          << (seen.contact.ok() ? name_of(seen.slide.status) : name_of(seen.contact.status)) << ','
          << seen.slide.dots << ',' << cell_of(seen.slide.slide_px.x) << ','
