@@ -218,9 +218,6 @@ struct FingertipDots {
     contact_at_dots(seen.view(), mask, touching.view(), radius_px);
     const double edge_px = edge_sd_px(touch.contact);
     contact_at_dots(seen.view(), mask, held.view(), radius_px + edge_px);
-    if (has_vague_edge(touch.contact) && !follows) {  // no object begins here
-      std::fill(held.cells.begin(), held.cells.end(), std::uint8_t{0});
-    }
     touch.stick = stick(at_mm.view(), touching.view(), time_s);
     if (touch.contact.ok()) {
       touch.shift = shift(at_mm.view(), touching.view());
@@ -241,6 +238,9 @@ struct FingertipDots {
     touch.slip = friction(load_of(touch), touch.stick);
     const LazyView slips(seen.rows, seen.cols,
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
+    if (has_vague_edge(touch.contact) && !follows) {
+      return;  // no object begins here
+    }
     touch.motion = motion(at_mm.view(), held.view(), slips, depth_noise_mm);
     follows = touch.motion.has_pose();
     if (touch.motion.ok() && touch.light_in_doubt()) {
