@@ -201,7 +201,8 @@ def main(root, source, xml):
                                                  for p in (root / "docs/first_hour").glob("*.md"))))
     general = sorted(f"docs/{p.stem}" for p in (root / "docs").glob("*.md"))
     project = ["docs/CONTRIBUTING", "docs/CHANGELOG", "docs/SECURITY", "tests/data/README"]
-    first = ["docs/install", "docs/your_sensor", "examples/README", "examples/data/README", "docs/results", "docs/faq"]
+    first = ["docs/install", "docs/your_sensor", "examples/README", "examples/data/README",
+             "docs/playground/playground", "docs/results", "docs/faq"]
     trees.insert(0, toctree("Start", first + [g for g in general if g not in first + project]))
     trees.append(toctree("Project", project))
     # README is the first page; its links and pictures are those of the folder that it is in.
