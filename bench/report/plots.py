@@ -102,6 +102,7 @@ def chain_stages(runs, path):
         axes.text(left, y, f" {left:.2f} ms", va="center", fontsize=8)
     axes.set_yticks(range(len(bars)), [name for name, _ in reversed(bars)])
     axes.set_xlabel("ms a frame of 640 x 480, one thread (medians)")
+    axes.set_title("Depth and contact take most of a frame", loc="left", fontsize=10, pad=24)
     axes.legend(ncol=4, fontsize=8, frameon=False, loc="lower center", bbox_to_anchor=(0.45, 1))
     axes.margins(x=0.1)
     save(figure, path)

@@ -127,10 +127,9 @@ auto linear_map(bool robust) {
         root = (1.345 * sd / off.array().max(1e-12)).min(1).sqrt();
       }
     }
-    fingerpad::ShearMap<> map{1,         {1},       {0},       fit(0, 0),
-                              fit(1, 0), fit(0, 1), fit(1, 1), {fit(2, 0), fit(2, 1)}};
-    return [shear = fingerpad::Shear<>(map)](const Point2<double>& d) {
-      return shear(1, d, 0).tangential_force_n;
+    return [fit](const Point2<double>& d) {
+      return Point2<double>{fit(0, 0) * d.x + fit(1, 0) * d.y + fit(2, 0),
+                            fit(0, 1) * d.x + fit(1, 1) * d.y + fit(2, 1)};
     };
   };
 }
