@@ -217,8 +217,8 @@ class DotLocator {
   bool load(const View& image, const Point2<double>& center, const DiscMap& map, double edge_px) {
     constexpr Index step = lanes_in<Row, float>;
     const double beyond = edge_px + around_px;
-    const double half_x = norm(Point2<double>{map.ja.x, map.jb.x}) + beyond;
-    const double half_y = norm(Point2<double>{map.ja.y, map.jb.y}) + beyond;
+    const double half_x = std::hypot(map.ja.x, map.jb.x) + beyond;
+    const double half_y = std::hypot(map.ja.y, map.jb.y) + beyond;
     const double left = std::ceil(center.x - half_x), top = std::ceil(center.y - half_y);
     const double right = std::floor(center.x + half_x), bottom = std::floor(center.y + half_y);
     if (!(left >= 0 && top >= 0 && right < double(image.cols()) && bottom < double(image.rows())) ||

@@ -128,6 +128,16 @@ class MarkFollower {
     for (const std::size_t k : order_) {
       middle += marks_[k].free / double(order_.size());
     }
+    // beside a gap in the print, too, another dot may come as near as elsewhere
+    const auto size_px = [&](std::size_t k) { return std::sqrt(std::fabs(area(marks_[k].map))); };
+    std::vector<double> gaps;
+    for (const std::size_t k : order_) {
+      gaps.push_back(marks_[k].next_px / size_px(k));
+    }
+    const double usual = median(gaps);
+    for (const std::size_t k : order_) {
+      marks_[k].next_px = (std::min)(marks_[k].next_px, usual * size_px(k));
+    }
     // what is at the border moves least and comes first
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
       return norm(marks_[a].free - middle) > norm(marks_[b].free - middle);
@@ -440,8 +450,7 @@ class MarkFollower {
   /// From frame to frame, and what is still since the free pad.
   static bool move_alike(const Mark& a, const Mark& b) {
     const Point apart = b.still ? b.free - a.free : b.last - a.last;
-    return squared_norm(b.place - a.place - apart) <
-           square(max_off) * (std::min)(squared_norm(apart), square(a.next_px));
+    return norm(b.place - a.place - apart) < max_off * (std::min)(norm(apart), a.next_px);
   }
 
   std::size_t part_of(std::size_t k) {
