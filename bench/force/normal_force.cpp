@@ -130,7 +130,8 @@ void add_all(const std::string& type) {
               []<class T>(T) { return published::normal_force_by_area<T>(); });
   add_each<S>(single + "/published::NormalForce by depth, published", largest_depth_mm,
               []<class T>(T) { return published::normal_force_by_depth<T>(); });
-  add_plain<S>(type, "NormalForce of degree 3", []<class T>(T) { return NormalForce(rising<T>()); });
+  add_plain<S>(type, "NormalForce of degree 3",
+               []<class T>(T) { return NormalForce(rising<T>()); });
   add_each<S>(single + "/power law, published", largest_radius_mm, [](auto) {
     return []<class T>(const T& radius_mm, const Point2<T>&, const T&) {
       return radius_mm > T(0) ? published::force_of_radius_n(radius_mm, T(6), T(1) / T(3)) : T(0);

@@ -130,8 +130,8 @@ void add_all() {
       },
       truth);
   add_shear<S>("straight lines, the default", shear, truth);
-  for (const auto& [name, map, largest] : {std::tuple{"by depth", by_depth, largest_mm},
-                                           {"by radius", by_radius, largest_mm}}) {
+  for (const auto& [name, map, largest] :
+       {std::tuple{"by depth", by_depth, largest_mm}, {"by radius", by_radius, largest_mm}}) {
     add_shear<S>(name, Shear(map), Shear(exactly(map)), largest);
   }
   const auto with_errors = [](ForceCurve<S> curve) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Virtual heights and points, one call for each pixel of an image. Errors are against long double
-// at the same pixel: the worse of the two heights; the position of a point. "published": one height,
-// and the sine of eq. 13.
+// at the same pixel: the worse of the two heights; the position of a point. "published": one
+// height, and the sine of eq. 13.
 #include <algorithm>
 #include <cmath>
 #include <memory>

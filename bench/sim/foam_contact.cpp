@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A lift by the foam contact model; the time is that of the whole lift. "printed": both integrals of
-// eq. 10 by the trapezoidal rule, from 0. Errors: mm, at ten times up to 40.
+// A lift by the foam contact model; the time is that of the whole lift. "printed": both integrals
+// of eq. 10 by the trapezoidal rule, from 0. Errors: mm, at ten times up to 40.
 #include "fingerpad/sim/foam_contact.hpp"
 
 #include <array>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Dots, flags, depths and readings in every kind of grid: every method that reads them gives the
 // same result to the bit.
-// Depth, neighbour light, contact region and stick ratio have tests of their own; the object's motion
-// and the shift of a contact read dots as the stick ratio does.
+// Depth, neighbour light, contact region and stick ratio have tests of their own; the object's
+// motion and the shift of a contact read dots as the stick ratio does.
 #include <cmath>
 
 #include "fingerpad/contact/equivalent_flat_area.hpp"

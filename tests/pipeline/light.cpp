@@ -111,7 +111,8 @@ TEST_CASE("a light that does not change is never in doubt", "[fingertip]") {
 TEST_CASE("a light that drifts during a press is in doubt before the depth is wrong",
           "[fingertip]") {
   // green and red for each frame, from a single free frame on
-  for (const auto& [green, red] : {std::pair(0.997, 0.997), {1.004, 1.004}, {1.0, 1.001}, {1.0, 0.999}}) {
+  for (const auto& [green, red] :
+       {std::pair(0.997, 0.997), {1.004, 1.004}, {1.0, 1.001}, {1.0, 0.999}}) {
     CAPTURE(green, red);
     Player play;
     CHECK_FALSE(play(false, 1, 1).depth_in_doubt);

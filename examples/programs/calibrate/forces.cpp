@@ -305,11 +305,11 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
   const Columns& forces = gauge ? *gauge : contacts;
   if (!forces.has("force_z_n") || !contacts.has("flat_area_mm2") ||
       (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
-    replay::fail(
-        contacts_file,
-        "the contacts must have the column flat_area_mm2, and contact_depth_mm where depth is known "
-        "(as frames.csv of replay), and the table of the gauge "
-        "frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
+    replay::fail(contacts_file,
+                 "the contacts must have the column flat_area_mm2, and contact_depth_mm where "
+                 "depth is known "
+                 "(as frames.csv of replay), and the table of the gauge "
+                 "frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
   }
   const std::vector<Sample> by_area = samples_of(contacts, gauge, area);
   const bool has_depth = contacts.has(depth.column);  // a gel without fluid has none

@@ -103,8 +103,7 @@ class FreeLight {
           block.bright * gains.green * scale.units_per_level * std::exp(-fade * higher);
       double sum = 0, count = 0;
       for (Index k = 0; k < width_ * width_; ++k) {
-        const auto g =
-            static_cast<double>(green(block.row + k / width_, block.col + k % width_));
+        const auto g = static_cast<double>(green(block.row + k / width_, block.col + k % width_));
         const bool is_lit = std::abs(g - expected) < 0.2 * expected && scale.counts(g);
         sum += is_lit ? g : 0;
         count += is_lit ? 1 : 0;
@@ -175,7 +174,8 @@ class FreeLight {
     }
     double count = 0;
     for (Index k = 0; k < width_ * width_; ++k) {
-      const std::size_t at = static_cast<std::size_t>((row + k / width_) * cols_ + col + k % width_);
+      const std::size_t at =
+          static_cast<std::size_t>((row + k / width_) * cols_ + col + k % width_);
       const auto b = static_cast<double>(reference.green[at]);
       sum.bright += b > 0.8 * brightest ? b : 0;
       count += b > 0.8 * brightest ? 1 : 0;
