@@ -306,8 +306,7 @@ Outcome force(const Path& contacts_file, const Path& gauge_file) {
   if (!forces.has("force_z_n") || !contacts.has("flat_area_mm2") ||
       (gauge && !(gauge->has("frame") && contacts.has("frame")))) {
     replay::fail(contacts_file,
-                 "the contacts must have the column flat_area_mm2, and contact_depth_mm where "
-                 "depth is known "
+                 "the contacts must have flat_area_mm2 and, where depth is known, contact_depth_mm "
                  "(as frames.csv of replay), and the table of the gauge "
                  "frame,force_x_n,force_y_n,force_z_n,moment_z_nm");
   }

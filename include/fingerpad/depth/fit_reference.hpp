@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
@@ -158,9 +159,7 @@ void mark_unexplained(const PadLight<C>& light, std::vector<FreeBlock<C>>& block
     error.push_back(std::abs(static_cast<double>(value(b.error_mm(light)))));
   }
   std::vector<double> sorted = error;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = (std::max)(0.05, 6 * 1.4826 * *middle);
+  const double limit = (std::max)(0.05, 6 * 1.4826 * detail::median(sorted));
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     blocks[k].fits = error[k] <= limit;
   }
