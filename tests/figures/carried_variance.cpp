@@ -1,20 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// Dependence of results on their calibration: derivatives by dual numbers against differences, and
-// the propagated variance against calibrations repeated with fresh noise.
-#include <Eigen/Dense>
+// Dependence of results on their calibration: derivatives by dual numbers against differences.
 #include <array>
 #include <cmath>
-#include <span>
-#include <vector>
 
 #include "fingerpad/adapt/dual.hpp"
-#include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
-#include "support/curves.hpp"
 #include "support/pad.hpp"
 #include "support/slipping_patch.hpp"
 
@@ -48,32 +42,6 @@ S depth_after_fit(const test::Pad& pad,
   const auto ray = ray_at_pixel(camera, S(static_cast<double>(row)), S(static_cast<double>(col)));
   return newton_depth(fluid, ray, reference.g(row, col), Colour<S>{S(seen.red), S(seen.green)})
       .depth_mm;
-}
-
-constexpr double reference_mm2 = 100;
-
-/// Tangential forces of a pad with 2 N/mm at the reference and the exponent 0.6.
-std::vector<ForceSample<double>> dragged(double noise_n, test::Random& random) {
-  std::vector<ForceSample<double>> samples;
-  for (int k = 0; k < 60; ++k) {
-    ForceSample<double> s;
-    s.measure = 40 + 4 * k;
-    const double angle = 2.4 * k;
-    const double length = 0.3 + 0.02 * (k % 20);
-    s.displacement_mm = {length * std::cos(angle), length * std::sin(angle)};
-    s.rotation_rad = 0;
-    const double gain = 2 * std::pow(s.measure / reference_mm2, 0.6);
-    s.tangential_force_n = {gain * s.displacement_mm.x + noise_n * random.normal(),
-                            gain * s.displacement_mm.y + noise_n * random.normal()};
-    samples.push_back(s);
-  }
-  return samples;
-}
-
-template <class S>
-Point2<S> force_at(const S& gain, const S& exponent, double measure, const Point2<double>& d) {
-  const Shear shear(test::straight_map(S(reference_mm2), exponent, S(1.5), gain, S(30)));
-  return shear(S(measure), {S(d.x), S(d.y)}, S(0)).tangential_force_n;
 }
 
 /// A camera's distance, index, center (x, y) and pitch.
@@ -149,31 +117,6 @@ TEST_CASE("depth follows fluid and camera, through the reference as well") {
       CHECK(std::abs(slope) > 1e-6);
     }
   }
-}
-
-TEST_CASE("variance of a force by look-up is what repeated calibrations scatter by") {
-  test::Random random(7);
-  constexpr double noise_n = 0.1;
-  constexpr int trials = 400;
-  const Point2<double> d = {0.5, -0.2};
-  const double measure = GENERATE(60.0, 250.0);
-  const auto fit_of = [](const std::vector<ForceSample<double>>& samples) {
-    return fit_tangential_force(std::span<const ForceSample<double>>(samples), reference_mm2);
-  };
-  double variance = 0;
-  double scatter = 0;
-  const auto truth = force_at(2.0, 0.6, measure, d);
-  for (int t = 0; t < trials; ++t) {
-    const auto fit = fit_of(dragged(noise_n, random));
-    const auto p = seeded(std::array{fit.law.slope, fit.law.exponent});
-    const auto force = force_at(p[0], p[1], measure, d);
-    const Eigen::Matrix2d covariance{{fit.covariance[0][0], fit.covariance[0][1]},
-                                     {fit.covariance[1][0], fit.covariance[1][1]}};
-    variance += carried_variance(force.x, covariance) / trials;
-    scatter += square(force.x.value - truth.x) / trials;
-  }
-  // 400 trials determine a variance to 7 %
-  CHECK(scatter / variance == Approx(1).margin(0.25));
 }
 
 TEST_CASE("slips of dots follow the camera") {

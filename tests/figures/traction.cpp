@@ -118,35 +118,6 @@ TEST_CASE("traction of finite-element membranes, noisy dots", "[traction]") {
   }
 }
 
-TEST_CASE("traction of finite-element membranes, mean of frames", "[traction]") {
-  // Dots averaged over 16 frames have a quarter of the noise, and so have all loads.
-  TractionField field(test::stress_free_dots(), {.mu_t_n_per_mm = true_mu_t});
-  const TractionScene s = test::traction_scene("drag");
-  test::Gauss gauss(5);
-  double one_sq = 0, mean_sq = 0;
-  for (int k = 0; k < 20; ++k) {
-    auto mean = s.dots;
-    for (auto& p : mean.cells) {
-      p = {0, 0, 0};
-    }
-    for (int n = 0; n < 16; ++n) {
-      const auto frame = noisy(s.dots, 0.02, gauss);
-      for (std::size_t c = 0; c < mean.cells.size(); ++c) {
-        mean.cells[c] = mean.cells[c] + 1.0 / 16 * frame.cells[c];
-      }
-      const auto r = field(frame, s.contact, s.pressure_mpa);
-      one_sq += squared_norm(r.force_n - s.force_n) / 16 / 20;
-    }
-    const auto r = field(mean, s.contact, s.pressure_mpa);
-    mean_sq += squared_norm(r.force_n - s.force_n) / 20;
-  }
-  const double one = std::sqrt(one_sq) / s.largest_force_n();
-  const double mean = std::sqrt(mean_sq) / s.largest_force_n();
-  INFO("force error, share of the largest component: one frame " << one << ", mean of 16 " << mean);
-  CHECK(mean < one / 2);
-  CHECK(mean < 0.02);
-}
-
 TEST_CASE("mu t from frames of the free pad", "[traction]") {
   TractionField field(test::stress_free_dots());
   const TractionScene s = test::traction_scene("free");

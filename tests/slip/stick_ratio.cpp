@@ -86,24 +86,6 @@ bool same(const StickResult<>& a, const StickResult<>& b) {
 
 }  // namespace
 
-TEST_CASE("stick ratio: names and numbers") {
-  CHECK(std::string(name_of(StickStatus::updated)) == "updated");
-  CHECK(std::string(name_of(StickStatus::unmoved)) == "unmoved");
-  CHECK(std::string(name_of(StickStatus::falls_back)) == "falls back");
-  CHECK(std::string(name_of(StickStatus::too_few_dots)) == "too few dots");
-  CHECK(std::string(name_of(StickStatus::not_in_order)) == "not in order");
-  CHECK(std::string(name_of(StickStatus::no_outline)) == "no outline");
-  CHECK(std::string(name_of(StickStatus::no_contact)) == "no contact");
-  CHECK(std::string(name_of(StickStatus::refused)) == "refused");
-  CHECK(static_cast<int>(DotState::none) == 0);
-  CHECK(static_cast<int>(DotState::unknown) == 1);
-  CHECK(static_cast<int>(DotState::slip) == 2);
-  CHECK(static_cast<int>(DotState::stick) == 3);
-  const StickResult<> none;
-  CHECK((!none.accepted() && !none.ok() && !none.updated()));
-  CHECK((none.dots_in_contact() == 0 && none.reference_age == 0 && none.furthest == 0));
-}
-
 TEST_CASE("stick ratio: what moves as one in the image sticks, and its motion is found") {
   const double turn_rad = 0.05, zoom = 1.03;
   SlippingDots dots;
@@ -452,24 +434,6 @@ TEST_CASE("stick ratio: noise makes as many dots slip as was asked") {
   CAPTURE(wrong / all);
   CHECK(wrong / all > 0.004);
   CHECK(wrong / all < 0.012);
-}
-
-TEST_CASE("stick ratio: copies go on alike, and apart") {
-  Follower f;
-  (void)f(shifted(0));
-  (void)f(shifted(3));
-  StickRatio<> copy = f.stick;
-  const auto a = f(shifted(6));
-  CHECK(a.reference_age == 1);
-  (void)copy(shifted(1), f.all);
-  StickRatio<> other(9, 9);
-  other = f.stick;
-  CHECK(same(f(shifted(9)), other(shifted(9), f.all)));
-  f.stick.reset();
-  const auto fresh = f(shifted(0));
-  CHECK(fresh.status == StickStatus::unmoved);
-  CHECK(std::isnan(fresh.stick_ratio));
-  CHECK(fresh.reference_age == 0);
 }
 
 TEST_CASE("stick ratio, bad input: missing and NaN dots") {
@@ -912,25 +876,6 @@ TEST_CASE("stick ratio, bad input: a contact mask that drops out for a moment") 
   CHECK(std::isnan(at(12, test::nan, false).stick_ratio));
 }
 
-TEST_CASE("stick ratio, bad input: an empty contact mask") {
-  Follower f;
-  auto r = f(shifted(0), f.none);
-  CHECK(r.status == StickStatus::no_contact);
-  CHECK(std::isnan(r.stick_ratio));
-  CHECK(r.dots_in_contact() == 0);
-  (void)f(shifted(0));
-  CHECK(f(shifted(3)).stick_ratio == 1);
-  r = f(shifted(-3), f.none);
-  CHECK(r.status == StickStatus::no_contact);
-  CHECK(std::isnan(r.stick_ratio));  // of another contact
-  CHECK(r.reference_age == 0);
-  for (Index k = 0; k < 81; ++k) {
-    CHECK(f.state(k / 9, k % 9) == DotState::none);
-  }
-  CHECK(f(shifted(9)).status == StickStatus::unmoved);
-  CHECK(f(shifted(12)).updated());
-}
-
 TEST_CASE("stick ratio, bad input: few dots, dots on a line, dots in one place") {
   const auto run = [](Index rows, Index cols) {
     Follower f(reference_2, rows, cols);
@@ -1037,35 +982,6 @@ TEST_CASE("stick ratio: bad parameters are refused by name, value and range") {
   CHECK(check(StickOptions{}).empty());
   CHECK(refusal([] { StickRatio<>(0, 9); }) == "StickRatio: rows = 0, must be in [1, 1000000]");
   CHECK(refusal([] { StickRatio<>(9, -1); }) == "StickRatio: cols = -1, must be in [1, 1000000]");
-}
-
-TEST_CASE("stick ratio: a pad seen in a mirror moves as the mirrored object") {
-  const auto mirrored = [](Point3<double> p, int axis) {
-    (axis == 0 ? p.x : axis == 1 ? p.y : p.z) *= -1;
-    return p;
-  };
-  for (const int axis : {0, 1, 2}) {
-    CAPTURE(axis);
-    SlippingPatch patch;
-    StickRatio<> stick(21, 21, {.noise = 0.005}), other = stick;
-    test::Random random(5);
-    const auto step = test::moved_by({0.01, 0.02, 0.01}, {1, 0, 28}, {0.1, 0.1, 0.02});
-    for (int k = 0; k < 4; ++k) {
-      const Spatial seen = noisy(patch.dots, 0.005, 0.025, random);
-      Spatial in_mirror = seen;
-      for (auto& p : in_mirror.cells) {
-        p = mirrored(p, axis);
-      }
-      const auto r = stick(seen, patch.contact), m = other(in_mirror, patch.contact);
-      CHECK(r.updated() == (k > 0));
-      CHECK(m.status == r.status);
-      CHECK(m.stick == r.stick);
-      for (const Point3<double>& p : {Point3<double>{0, 0, 10}, {3, 0, 10}, {0, 3, 10}}) {
-        CHECK(norm(m.motion(mirrored(p, axis)) - mirrored(r.motion(p), axis)) < 1e-9);
-      }
-      patch.step(step, 0.7);
-    }
-  }
 }
 
 namespace {
@@ -1413,50 +1329,6 @@ TEST_CASE("a stick ratio is a value", "[stick_ratio][law]") {
   });
 }
 
-TEST_CASE("dots lost at random change the ratio by the sampling error",
-          "[stick_ratio][law][figures]") {
-  // With m of n dots left, the ratio p of these has the error
-  //   sqrt(p (1 - p) / m (n - m) / (n - 1)).
-  // Dots at the edge of the stick region are averaged with others and some change sides: up to half
-  // as much again. With noise the dots around which the search begins are others, too: up to three
-  // times as much.
-  const auto spread = [](double noise_px, double lost_share, bool lost_now) {
-    double sum_sq = 0, expected_sq = 0;
-    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
-      test::Random random(seed);
-      SlippingDots truth;
-      auto before = noisy(truth.dots, noise_px, random);
-      truth.step({.shift_px = 5, .direction_rad = random.uniform(0, 6), .stick_share = 0.7});
-      auto after = noisy(truth.dots, noise_px, random);
-      const auto said = [&] {
-        StickRatio<> stick(21, 21, {.noise = noise_px > 0 ? noise_px : 0.06});
-        (void)stick(before, truth.contact);
-        return stick(after, truth.contact);
-      };
-      const auto all = said();
-      for (Point& p : (lost_now ? after : before).cells) {
-        p = random.uniform() < lost_share ? missing : p;
-      }
-      const auto left = said();
-      REQUIRE((all.updated() && left.updated()));
-      const double p = static_cast<double>(all.stick_ratio);
-      const double n = static_cast<double>(all.stick + all.slip);
-      const double m = static_cast<double>(left.stick + left.slip);
-      REQUIRE(m < n);
-      sum_sq += square(static_cast<double>(left.stick_ratio) - p);
-      expected_sq += p * (1 - p) / m * (n - m) / (n - 1);
-    }
-    return std::sqrt(sum_sq / expected_sq);
-  };
-  for (const bool lost_now : {true, false}) {
-    for (const double lost : {0.05, 0.2, 0.5}) {
-      CAPTURE(lost_now, lost);
-      CHECK(spread(0, lost, lost_now) < 1.5);
-      CHECK(spread(0.14, lost, lost_now) < 3.2);
-    }
-  }
-}
-
 TEST_CASE("stick ratio: nothing is worse than a status", "[stick_ratio][law]") {
   rc::prop("whatever the dots, the flags, the times and the sizes", [] {
     const Index rows = test::whole(1, 8), cols = test::whole(1, 8);
@@ -1724,18 +1596,6 @@ TEST_CASE("angles near half a turn do not wrap", "[stick_ratio]") {
   }
 }
 
-TEST_CASE("a plain press has its scale", "[stick_ratio]") {
-  // There is no common motion.
-  SlippingDots truth;
-  const PointsPx before = truth.dots;
-  truth.step({.zoom = 1.05});
-  const auto r = between(before, truth.dots, truth.contact);
-  REQUIRE(r.updated());
-  CHECK(r.stick_ratio == 1);
-  CHECK(r.scale == Approx(1.05).margin(1e-9));
-  CHECK(std::abs(angle_of(r)) < 1e-12);
-}
-
 TEST_CASE("dots on a line, and displacements that are all parallel", "[stick_ratio]") {
   for (const bool upright : {false, true}) {
     const Index rows = upright ? 15 : 1, cols = upright ? 1 : 15;
@@ -1788,49 +1648,4 @@ TEMPLATE_TEST_CASE(
   stick.reset();
   stick = fresh;
   CHECK(test::allocations() == before);
-}
-
-TEST_CASE("stick ratio in space and friction limit: no frame allocates", "[stick_ratio]") {
-  StickRatio<> stick(21, 21);  // its noise is measured
-  FrictionLimit<double> limit;
-  test::SlippingPatch patch;
-  test::Random random(1);
-  long taken = 0;
-  int updated = 0;
-  for (int k = 0; k < 40; ++k) {
-    const auto dots = noisy(patch.dots, 0.005, 0.025, random);
-    const long before = test::allocations();
-    const auto r = stick(dots, patch.contact);
-    const auto load =
-        contact_load(Point3<double>{0.1 * k, 0, -5}, Point3<double>{1, 2, 3}, dots, patch.contact);
-    (void)limit(load, r);
-    taken += test::allocations() - before;
-    updated += r.updated() ? 1 : 0;
-    patch.step(test::moved_by({0, 0.002, 0.002}, {0, 0, 28}, {0.1, 0, 0}), 1.2 - 0.03 * k);
-  }
-  CHECK(updated > 20);
-  CHECK(taken == 0);
-}
-
-TEMPLATE_TEST_CASE("published stick ratio: a frame allocates nothing",
-                   "[stick_ratio][published]",
-                   float,
-                   double) {
-  const long before_all = test::allocations();
-  published::StickRatio<TestType> ratio(21, 21, {.capacity = 16});
-  CHECK(test::allocations() > before_all);  // all memory is allocated here
-  test::SlippingDots truth;
-  test::Random random(1);
-  const auto steps = test::steps_of(test::SlipScene::everything, 1);
-  int updated = 0;
-  long taken = 0;
-  for (int k = 0; k < 100; ++k) {
-    truth.step(steps[static_cast<std::size_t>(k) % steps.size()]);
-    const auto dots = noisy(truth.dots, 0.14, random);
-    const long before = test::allocations();
-    updated += ratio(dots, truth.contact).ok() ? 1 : 0;
-    taken += test::allocations() - before;
-  }
-  CHECK(updated > 60);
-  CHECK(taken == 0);
 }
