@@ -60,7 +60,7 @@ TEST_CASE("camera and fluid are differentiated in one pass", "[dual]") {
       return colour_at_depth(fluid, pencil, S(57), S(0.02), S(7)).red;
     };
     const Gradient both = red(Gradient::parameter(n0, 0), Gradient::parameter(c0, 1));
-    using D = test::Dual<double>;
+    using D = test::Tangent<double>;
     const D by_index = red(D(n0, 1), D(c0));
     const D by_absorption = red(D(n0), D(c0, 1));
     const auto close = [](double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b); };

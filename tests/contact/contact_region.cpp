@@ -879,7 +879,7 @@ using test::Digits50;
 namespace test {
 
 template <class Real>
-Dual<Real> acos(const Dual<Real>& a) {
+Tangent<Real> acos(const Tangent<Real>& a) {
   using std::acos;
   using std::sqrt;
   const Real sine_sq = Real(1) - a.v * a.v;
@@ -954,12 +954,12 @@ TEST_CASE("the share's derivative by dual numbers", "[contact_region]") {
   const auto share = [](const auto& offset) { return edge_share(offset); };
   rc::prop("against differences", [&] {
     const Digits50 offset(test::uniform(0.01, 0.99));
-    const Digits50 exact = test::slope_by_dual(share, offset);
+    const Digits50 exact = test::slope_by_tangent(share, offset);
     const Digits50 nearly = test::slope_by_difference(share, offset, Digits50("1e-16"));
     RC_ASSERT(test::relative_error(nearly, exact) < Digits50("1e-25"));
   });
   // on the edge: 4 / pi, the factor of calibration from noise of curvature to noise of the edge
-  CHECK(test::slope_by_dual(share, 0.0) == Approx(4 / pi.convert_to<double>()).epsilon(1e-14));
+  CHECK(test::slope_by_tangent(share, 0.0) == Approx(4 / pi.convert_to<double>()).epsilon(1e-14));
 }
 
 TEST_CASE("a round edge curves away from the ring", "[contact_region]") {

@@ -87,7 +87,7 @@ TEST_CASE("a refusal prints every kind of number", "[expects]") {
   REQUIRE(message(0.5f) == "A: b = 0.5, must be good");
   REQUIRE(message(0.5L) == "A: b = 0.5, must be good");
   REQUIRE(message(Digits50(-2)) == "A: b = -2, must be good");
-  REQUIRE(message(test::Dual<double>(3, 7)) == "A: b = 3, must be good");
+  REQUIRE(message(test::Tangent<double>(3, 7)) == "A: b = 3, must be good");
   REQUIRE(contains(message(missing), "nan"));
   REQUIRE(contains(message(-infinity), "-inf"));
 }
@@ -111,7 +111,7 @@ TEST_CASE("a table of parameters refuses the first that is out of its range", "[
   CHECK(refusal(0.999, at_least(1)) == "A: b = 0.999, must be finite and >= 1");
   CHECK(refusal(1.5, within(0, 1)) == "A: b = 1.5, must be in [0, 1]");
   CHECK(refusal(test::Digits50(1), within(0, 1)) == later);
-  CHECK(refusal(test::Dual<double>(2, 1), within(0, 1)) == "A: b = 2, must be in [0, 1]");
+  CHECK(refusal(test::Tangent<double>(2, 1), within(0, 1)) == "A: b = 2, must be in [0, 1]");
   CHECK(refusal(4, odd_within(3, 109)) == "A: b = 4, must be odd, in [3, 109]");
   CHECK(refusal(-3LL, odd_within(-5, 5)) == later);
   CHECK(refusal(1000000, within(1, 10)) == "A: b = 1000000, must be in [1, 10]");
@@ -124,7 +124,7 @@ TEST_CASE("nothing happens for good values", "[expects]") {
   REQUIRE_NOTHROW(require(Camera<>{}));
   REQUIRE_NOTHROW(require(Camera<test::Digits50>{}));
   REQUIRE_NOTHROW(require(Absorption<>{}));
-  REQUIRE_NOTHROW(require(Absorption<test::Dual<float>>{}));
+  REQUIRE_NOTHROW(require(Absorption<test::Tangent<float>>{}));
 }
 
 TEST_CASE("the installed handler hears of a refusal first", "[expects]") {

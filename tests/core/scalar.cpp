@@ -11,10 +11,10 @@
 
 using namespace fingerpad;
 using test::Digits50;
-using test::Dual;
+using test::Tangent;
 
 static_assert(scalar<float> && scalar<double> && scalar<long double>);
-static_assert(scalar<Digits50> && scalar<Dual<double>> && scalar<Dual<float>>);
+static_assert(scalar<Digits50> && scalar<Tangent<double>> && scalar<Tangent<float>>);
 static_assert(!scalar<int> && !scalar<bool> && !scalar<char> && !scalar<void*>);
 static_assert(!scalar<std::string> && !scalar<const double> && !scalar<double&>);
 // Sums that are expressions and hold references would dangle in `auto`.
@@ -24,7 +24,7 @@ static_assert(!scalar<Lazy50>);
 
 static_assert(std::same_as<scalar_real_t<float>, float>);
 static_assert(std::same_as<scalar_real_t<Digits50>, Digits50>);
-static_assert(std::same_as<scalar_real_t<Dual<float>>, float>);
+static_assert(std::same_as<scalar_real_t<Tangent<float>>, float>);
 
 
 // Functions without mathematics are usable at compile time.
@@ -38,8 +38,8 @@ TEMPLATE_TEST_CASE("every scalar has a value, an epsilon, NaN and infinities",
                    double,
                    long double,
                    Digits50,
-                   Dual<float>,
-                   Dual<Digits50>) {
+                   Tangent<float>,
+                   Tangent<Digits50>) {
   using S = TestType;
   using R = scalar_real_t<S>;
   const R infinity = (std::numeric_limits<R>::infinity)();
@@ -65,8 +65,8 @@ TEMPLATE_TEST_CASE("every scalar has a value, an epsilon, NaN and infinities",
 }
 
 TEST_CASE("the value of a dual number leaves its derivative out", "[scalar]") {
-  const Dual<double> x(2, 5);
+  const Tangent<double> x(2, 5);
   REQUIRE(value(x) == 2);
   REQUIRE(square(x).d == 20);
-  REQUIRE(is_finite(Dual<double>(1, not_a_number<double>())));  // branches use values only
+  REQUIRE(is_finite(Tangent<double>(1, not_a_number<double>())));  // branches use values only
 }

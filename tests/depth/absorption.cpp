@@ -13,7 +13,7 @@
 
 using namespace fingerpad;
 using test::Digits50;
-using test::Dual;
+using test::Tangent;
 
 namespace {
 
@@ -182,11 +182,11 @@ TEST_CASE("the slope of W is its derivative", "[absorption]") {
     const auto p = any_pencil();
     const double c = test::log_uniform(1e-6, 1);
     const double l = test::uniform(1e-3, 14);
-    const auto w = [&](const Dual<double>& z) {
-      return scattered_light(z, Dual<double>(c), as<Dual<double>>(p));
+    const auto w = [&](const Tangent<double>& z) {
+      return scattered_light(z, Tangent<double>(c), as<Tangent<double>>(p));
     };
     const double slope = scattered_light_slope(l, c, p);
-    RC_ASSERT(near(test::slope_by_dual(w, l), slope, w(l).v / l + slope, 1000));
+    RC_ASSERT(near(test::slope_by_tangent(w, l), slope, w(l).v / l + slope, 1000));
   });
   rc::prop("by central differences in 50 digits", [] {
     const auto p = as<Digits50>(any_pencil());
@@ -250,7 +250,7 @@ TEST_CASE("the depth equation", "[absorption]") {
   });
   rc::prop("has the slope of its value", [] {
     const Sensor s;
-    using D = Dual<double>;
+    using D = Tangent<double>;
     const auto colour = colour_at_depth(s.fluid, s.light, s.brightness, s.scattering, s.depth_mm);
     const auto f = depth_equation(as<D>(s.fluid), as<D>(s.light), D(s.scattering),
                                   Colour<D>{D(colour.red), D(colour.green)}, D(s.depth_mm, 1));

@@ -33,7 +33,7 @@
 
 using namespace fingerpad;
 using test::Digits50;
-using test::Dual;
+using test::Tangent;
 using test::Frame;
 using test::Image;
 using test::mirrored;
@@ -962,7 +962,7 @@ TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth", "[d
 
 namespace {
 
-using D = Dual<double>;
+using D = Tangent<double>;
 
 /// Depth as a function of (red, green, c_red, kappa, g), with the one of index `which` shifted by
 /// x.

@@ -252,7 +252,7 @@ TEST_CASE("intensity depth: fifty digits and duals", "[intensity_depth]") {
   const Digits50 fine = pressed_depth_mm(law, Digits50(0.3));
   CHECK(pressed_depth_mm(law, 0.3) == Approx(static_cast<double>(fine)).epsilon(1e-15));
   const double slope =
-      test::slope_by_dual<double>([&](const auto& l) { return pressed_depth_mm(law, l); }, 0.3);
+      test::slope_by_tangent<double>([&](const auto& l) { return pressed_depth_mm(law, l); }, 0.3);
   CHECK(slope == Approx(3 - 0.3 + 3 * 0.25 * 0.09));
 }
 

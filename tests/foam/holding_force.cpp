@@ -469,7 +469,7 @@ TEMPLATE_TEST_CASE("searches: in any number",
                    double,
                    long double,
                    test::Digits50,
-                   test::Dual<double>) {
+                   test::Tangent<double>) {
   using S = TestType;
   const auto number = [](const S& x) { return static_cast<double>(value(x)); };
   const LoosenUntilPreslip<S> loosen;

@@ -931,7 +931,7 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
                    float,
                    long double,
                    test::Digits50,
-                   test::Dual<double>) {
+                   test::Tangent<double>) {
   using S = TestType;
   const auto check = [](PreslipRule rule) {
     const Options options{.rule = rule, .history = 12, .centroid_tolerance_mm = 0.125};
@@ -969,7 +969,7 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
 }
 
 TEST_CASE("pre-slip: a derivative that is not a number changes nothing", "[preslip]") {
-  using S = test::Dual<double>;
+  using S = test::Tangent<double>;
   auto older = felt<S>(1, 1, 0, 0), later = felt<S>(2, 2, 1, 0);
   later.center_x_mm.d = none;
   CHECK(holds(PreslipRule::printed_grasp_lift, Hand<1, S>{older}, Hand<1, S>{later}));
@@ -1015,7 +1015,7 @@ std::array<FingerSample<S>, 2> hand(int k) {
 }  // namespace
 
 TEMPLATE_TEST_CASE(
-    "pre-slip: a sample allocates nothing", "[preslip]", float, double, test::Dual<double>) {
+    "pre-slip: a sample allocates nothing", "[preslip]", float, double, test::Tangent<double>) {
   for (const PreslipRule rule :
        {PreslipRule::grasp_lift, PreslipRule::grasp_optimise, PreslipRule::printed_grasp_lift,
         PreslipRule::printed_grasp_optimise}) {

@@ -539,7 +539,7 @@ TEMPLATE_TEST_CASE(
 }
 
 TEST_CASE("taxel features: derivative of the centroid", "[taxel_features]") {
-  using S = test::Dual<double>;
+  using S = test::Tangent<double>;
   TaxelFeatures<S> finger(1, 2, {.noise = 0.1});
   Image<S> taxels(1, 2, S(3.0));
   taxels(0, 1) = S(1.0, 1.0);

@@ -124,7 +124,7 @@ TEST_CASE("membrane triangle: energy of a known deformation", "[traction]") {
 }
 
 TEST_CASE("membrane triangle: forces are the slope of the energy", "[traction]") {
-  using D = test::Dual<double>;
+  using D = test::Tangent<double>;
   const auto reference = test::stress_free(some_triangle);
   const auto force = test::corner_forces(reference, pulled_triangle);
   FreeTriangle<D> dual;
@@ -516,7 +516,7 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
 }
 
 TEST_CASE("traction: derivatives with respect to the pressure", "[traction]") {
-  using D = test::Dual<double>;
+  using D = test::Tangent<double>;
   const auto s = test::traction_scene("tilt");
   TractionField<D> field(test::stress_free_dots(), {.mu_t_n_per_mm = D(0.5)});
   const auto r = field(s.dots, s.contact, D(s.pressure_mpa, 1));

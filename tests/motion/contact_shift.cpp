@@ -33,7 +33,7 @@ using test::shift_by;
 namespace test {
 
 template <class Real>
-Dual<Real> atan2(const Dual<Real>& y, const Dual<Real>& x) {
+Tangent<Real> atan2(const Tangent<Real>& y, const Tangent<Real>& x) {
   using std::atan2;
   return {Real(atan2(y.v, x.v)), Real((x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v))};
 }
@@ -714,9 +714,9 @@ TEMPLATE_TEST_CASE("contact shift: derivatives are those of differences",
       const auto r = shift<TestType, PlainMean, S>(as<S>(free), pushed, contact);
       return std::array<S, 3>{r.displacement.x, r.displacement.y, r.rotation_rad};
     };
-    using Dual = test::Dual<Digits50>;
+    using Tangent = test::Tangent<Digits50>;
     const Digits50 h("1e-15");
-    const auto dual = at(Dual(Digits50(0), Digits50(1)));
+    const auto dual = at(Tangent(Digits50(0), Digits50(1)));
     const auto above = at(h), below = at(Digits50(-h));
     for (std::size_t k = 0; k < 3; ++k) {
       const Digits50 slope = (above[k] - below[k]) / (2 * h);

@@ -19,7 +19,7 @@ using test::any_offset;
 using test::any_tangent;
 using test::as;
 using test::Digits50;
-using test::Dual;
+using test::Tangent;
 using test::near;
 
 namespace {
@@ -210,7 +210,7 @@ TEMPLATE_TEST_CASE("the center pixel looks along the axis, exactly",
                    float,
                    double,
                    Digits50,
-                   Dual<double>) {
+                   Tangent<double>) {
   using S = TestType;
   const Camera<S> camera;
   const auto ray = ray_at_pixel(camera, camera.center_y_px, camera.center_x_px);
@@ -320,9 +320,9 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
     const double z = test::uniform(0, 15);
     const auto sum = [](const auto& p) { return p.x - p.y; };
     const auto agree = [](const auto& f, double x) {
-      const double by_dual = test::slope_by_dual(f, x);
+      const double by_tangent = test::slope_by_tangent(f, x);
       const double by_difference = test::slope_by_difference(f, x, 1e-5 * (1 + std::abs(x)));
-      RC_ASSERT(std::abs(by_dual - by_difference) <= 1e-6 * (1 + std::abs(by_difference)));
+      RC_ASSERT(std::abs(by_tangent - by_difference) <= 1e-6 * (1 + std::abs(by_difference)));
     };
     agree(
         [&]<class S>(const S& n) {
@@ -355,7 +355,7 @@ TEST_CASE("derivatives by the dual number are those of central differences", "[o
       c.refractive_index = n;
       return ray_at_pixel(c, c.center_y_px, c.center_x_px).path_factor;
     };
-    RC_ASSERT(std::abs(test::slope_by_dual(k, camera.refractive_index)) < 1e-14);
+    RC_ASSERT(std::abs(test::slope_by_tangent(k, camera.refractive_index)) < 1e-14);
   });
 }
 
@@ -400,9 +400,9 @@ TEST_CASE("a lens distorts as in OpenCV", "[optics]") {
         const auto back = pixel_of(c, Point3<S>{S(4), S(-3), S(2)});
         return S(there.x - there.y + S(camera.pitch_mm) * (back.x + back.y));
       };
-      const double by_dual = test::slope_by_dual(f, x);
+      const double by_tangent = test::slope_by_tangent(f, x);
       const double by_difference = test::slope_by_difference(f, x, 1e-6 * (1 + std::abs(x)));
-      RC_ASSERT(std::abs(by_dual - by_difference) <= 1e-5 * (1 + std::abs(by_difference)));
+      RC_ASSERT(std::abs(by_tangent - by_difference) <= 1e-5 * (1 + std::abs(by_difference)));
     };
     if (std::hypot(5, 4) / camera.plate_distance_mm < 0.6) {
       agree(0, camera.distortion_k1);

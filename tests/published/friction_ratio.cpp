@@ -56,7 +56,7 @@ TEST_CASE("friction ratio: any number type", "[friction_ratio]") {
   CHECK(static_cast<double>(digits(Digits50(1), Digits50(3), false)) ==
         Approx(1.0 / 3).epsilon(1e-15));
   // derivative of the margin by the grip: F / N^2 over the stored ratio
-  using D = test::Dual<double>;
+  using D = test::Tangent<double>;
   FrictionRatio<D> dual;
   (void)dual(D(0.5), D(1), true);
   CHECK(dual(D(1), D(4, 1), false).d == Approx(1.0 / 16 / 0.5));

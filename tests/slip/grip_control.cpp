@@ -73,7 +73,7 @@ TEST_CASE("grip control: the law", "[grip_control]") {
   };
   using test::Digits50;
   CHECK(static_cast<double>(force_n(Digits50(0.75))) == Approx(3.3).epsilon(1e-14));
-  CHECK(test::slope_by_dual(force_n, 0.75) == Approx(-60 * 0.1));
+  CHECK(test::slope_by_tangent(force_n, 0.75) == Approx(-60 * 0.1));
 }
 
 TEST_CASE("grip control: slip is answered in the call that shows it", "[grip_control]") {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Number types of the tests besides float, double and long double: fifty digits as the reference,
-// and a dual number that differs from the library's own.
+// and a number with one derivative that is not the library's own Dual.
 #include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
@@ -33,31 +33,31 @@ bool within_ulps(S a, S b, int ulps) {
 
 /// A number and its derivative with respect to one seed.
 template <class Real>
-struct Dual {
+struct Tangent {
   Real v = Real(0);
   Real d = Real(0);
 
-  Dual() = default;
-  Dual(Real value) : v(value) {}  // NOLINT: implicit, as numbers are
-  Dual(Real value, Real slope) : v(value), d(slope) {}
+  Tangent() = default;
+  Tangent(Real value) : v(value) {}  // NOLINT: implicit, as numbers are
+  Tangent(Real value, Real slope) : v(value), d(slope) {}
 
-  friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
-  friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
-  friend Dual operator-(const Dual& a, const Dual& b) { return {a.v - b.v, a.d - b.d}; }
-  friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
-  friend Dual operator/(const Dual& a, const Dual& b) {
+  friend Tangent operator-(const Tangent& a) { return {-a.v, -a.d}; }
+  friend Tangent operator+(const Tangent& a, const Tangent& b) { return {a.v + b.v, a.d + b.d}; }
+  friend Tangent operator-(const Tangent& a, const Tangent& b) { return {a.v - b.v, a.d - b.d}; }
+  friend Tangent operator*(const Tangent& a, const Tangent& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+  friend Tangent operator/(const Tangent& a, const Tangent& b) {
     return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v};
   }
-  Dual& operator+=(const Dual& b) { return *this = *this + b; }
-  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
-  friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
-  friend Dual exp(const Dual& a) {
+  Tangent& operator+=(const Tangent& b) { return *this = *this + b; }
+  friend bool operator<(const Tangent& a, const Tangent& b) { return a.v < b.v; }
+  friend bool operator>(const Tangent& a, const Tangent& b) { return a.v > b.v; }
+  friend bool operator==(const Tangent& a, const Tangent& b) { return a.v == b.v; }
+  friend Tangent exp(const Tangent& a) {
     using std::exp;
     const Real e = exp(a.v);
     return {e, e * a.d};
   }
-  friend Dual sqrt(const Dual& a) {
+  friend Tangent sqrt(const Tangent& a) {
     using std::sqrt;
     const Real r = sqrt(a.v);
     return {r, a.d / (r + r)};
@@ -66,8 +66,8 @@ struct Dual {
 
 /// f'(x) by the dual number.
 template <class Real, class F>
-Real slope_by_dual(const F& f, Real x) {
-  return f(Dual<Real>(x, Real(1))).d;
+Real slope_by_tangent(const F& f, Real x) {
+  return f(Tangent<Real>(x, Real(1))).d;
 }
 
 /// f'(x) by central differences. A step of about epsilon^(1/3) gives a precision of about
@@ -87,8 +87,8 @@ Real relative_error(const Real& a, const Real& b) {
 }  // namespace test
 
 template <class Real>
-struct fingerpad::scalar_traits<test::Dual<Real>> {
+struct fingerpad::scalar_traits<test::Tangent<Real>> {
   using real = Real;
   static constexpr Real epsilon() { return (std::numeric_limits<Real>::epsilon)(); }
-  static const Real& value(const test::Dual<Real>& x) { return x.v; }
+  static const Real& value(const test::Tangent<Real>& x) { return x.v; }
 };
