@@ -14,7 +14,6 @@
 
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/calibrate/contact.hpp"
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
@@ -87,28 +86,6 @@ struct IntensityByBall {
         fit_intensity<S>(free, std::array{pressed}, S(4) * p, S(0.1), 1, {.smoothing_px = 0});
     REQUIRE(fit.ok());
     return {fit.law.linear_mm, fit.max_depth_mm};
-  }
-};
-
-/// Noise of dots with one frame scaled up.
-struct DotNoiseByScale {
-  template <class S>
-  Results<S> operator()(const S& p) const {
-    Random random(3);
-    std::vector<Image<Point2<S>>> frames;
-    for (int k = 0; k < 12; ++k) {
-      Image<Point2<S>> dots(7, 7, {S(0), S(0)});
-      for (Index i = 0; i < 7; ++i) {
-        for (Index j = 0; j < 7; ++j) {
-          const S x = S(20 * static_cast<double>(j) + 0.1 * random.normal());
-          const S y = S(20 * static_cast<double>(i) + 0.1 * random.normal());
-          dots(i, j) = k == 4 ? Point2<S>{S(p * x), S(p * y)} : Point2<S>{x, y};
-        }
-      }
-      frames.push_back(dots);
-    }
-    const auto noise = dot_noise<S>(frames);
-    return {noise.noise_px, noise.slow_share, noise.noise_error_px};
   }
 };
 
@@ -188,7 +165,6 @@ void check(const char* name, const Calibration& run, double float_error, bool mo
 TEST_CASE("calibrations: in float, and with derivatives") {
   check("neighbouring light", LightByPitch(), 2e-3);
   check("intensity", IntensityByBall(), 2e-2);
-  check("noise of dots", DotNoiseByScale(), 1e-3);
   check("noise of taxels", TaxelsByGain(), 1e-3);
   check("free pad", FreePadByPitch(), 2e-2);
 }

@@ -15,7 +15,6 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
@@ -355,29 +354,6 @@ namespace {
 
 // ---- frames
 
-/// Dots of a resting pad with 0.06 px of noise, changed frame by frame.
-std::function<std::string()> standing(
-    const std::function<void(Image<Point2<double>>&, int)>& change, Index rows = 9) {
-  return [=] {
-    return said([&] {
-      Random random(4);
-      std::vector<Image<Point2<double>>> frames;
-      for (int t = 0; t < 30; ++t) {
-        Image<Point2<double>> dots(rows, 9);
-        for (Index i = 0; i < rows; ++i) {
-          for (Index j = 0; j < 9; ++j) {
-            dots(i, j) = {100 + 19.5 * static_cast<double>(j) + 0.06 * random.normal(),
-                          50 + 19.5 * static_cast<double>(i) + 0.06 * random.normal()};
-          }
-        }
-        change(dots, t);
-        frames.push_back(dots);
-      }
-      return dot_noise(frames);
-    });
-  };
-}
-
 /// Readings of 6 x 4 taxels at rest, every 30th of a second or every `period_s`.
 std::function<std::string()> resting(const std::function<double(double, Index, Index)>& reading,
                                      double period_s = 1.0 / 30) {
@@ -442,49 +418,6 @@ std::function<std::string()> rim(double pressure,
 }
 
 }  // namespace
-
-TEST_CASE("mistakes: noise of the dots", "[mistakes]") {
-  using Dots = Image<Point2<double>>;
-  check({
-      {"none", standing([](Dots&, int) {}), "ok"},
-      {"the pad is stretched meanwhile", standing([](Dots& dots, int t) {
-         for (auto& p : dots.cells) {
-           p.x *= 1 + 2e-4 * t;
-         }
-       }),
-       "check that the pad is at rest"},
-      {"the same frame again and again", standing([](Dots& dots, int) {
-         for (std::size_t k = 0; k < dots.cells.size(); ++k) {
-           dots.cells[k] = {20.0 * static_cast<double>(k % 9), 20.0 * static_cast<double>(k / 9)};
-         }
-       }),
-       "the frames are identical"},
-      {"all dots lost", standing([](Dots& dots, int) {
-         for (auto& p : dots.cells) {
-           p.x = test::nan;
-         }
-       }),
-       "dots = 0"},
-      {"a dot as far away as numbers go, now and then", standing([](Dots& dots, int t) {
-         dots.cells[40].x = t % 3 == 0 ? 1.7e308 : dots.cells[40].x;
-       }),
-       "ok"},
-      {"dots in mm",  // noise is in the unit of the dots
-       standing([](Dots& dots, int) {
-         for (auto& p : dots.cells) {
-           p = {p.x * 0.06, p.y * 0.06};
-         }
-       }),
-       "ok"},
-      {"dots 0..1", standing([](Dots& dots, int) {
-         for (auto& p : dots.cells) {
-           p = {p.x / 640, p.y / 480};
-         }
-       }),
-       "ok"},
-      {"no dots", standing([](Dots&, int) {}, 0), "rows = 0"},
-  });
-}
 
 TEST_CASE("mistakes: noise of the taxels", "[mistakes]") {
   check({

@@ -13,7 +13,6 @@
 #include <tuple>
 #include <vector>
 
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/motion/contact_shift.hpp"
 #include "fingerpad/motion/object_motion.hpp"
@@ -351,9 +350,6 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
         refusal([&] { const ContactShift<> r(px); }),
         refusal([&] { const GelSlide r(rows, cols, PointsPx(9, 9)); }),
         refusal([&] { const GelSlide r(60, 80, px); }),
-        refusal([&] {
-          (void)dot_noise(std::array{px, px});
-        }),
         refusal([&] { const published::StickRatio<> r(rows, cols); }),
     };
   };

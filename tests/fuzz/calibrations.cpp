@@ -8,13 +8,12 @@
 
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/intensity.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
 #include "fingerpad/calibrate/rim.hpp"
-#include "fuzz/dots.hpp"
+#include "fuzz/input.hpp"
 
 using namespace fingerpad;
 using fuzz::Grid;
@@ -123,21 +122,6 @@ void try_intensity(Input& in) {
   }
 }
 
-void try_dot_noise(Input& in) {
-  const Index rows = in.whole(0, 8), cols = in.whole(0, 8);
-  const auto rest = fuzz::any_dots<Point2<float>>(in, rows, cols);
-  std::vector<Grid<Point2<float>>> frames;
-  for (Index k = in.whole(0, 8); k > 0; --k) {
-    frames.push_back(fuzz::moved_dots(in, rest));
-  }
-  std::vector<decltype(frames[0].view())> views;
-  for (auto& frame : frames) {
-    views.push_back(frame.view());
-  }
-  const DotNoise<> found = dot_noise(views);
-  require(is_finite(found.noise_px) && found.noise_px > 0, "noise is above 0");
-}
-
 void try_rim(Input& in) {
   std::vector<FreeApex> apexes;
   for (Index k = in.whole(1, 3); k > 0; --k) {
@@ -192,9 +176,9 @@ void try_neighbour_light(Input& in) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::run(data, size, [](Input& in) {
-    constexpr void (*targets[])(Input&) = {try_forces,    try_absorption,     try_taxels,
-                                           try_intensity, try_dot_noise,      try_rim,
-                                           try_free_pad,  try_neighbour_light};
-    targets[in.whole(0, 7)](in);
+    constexpr void (*targets[])(Input&) = {try_forces,         try_absorption, try_taxels,
+                                           try_intensity,      try_rim,        try_free_pad,
+                                           try_neighbour_light};
+    targets[in.whole(0, 6)](in);
   });
 }

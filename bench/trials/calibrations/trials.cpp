@@ -14,7 +14,6 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/neighbour_light.hpp"
@@ -144,33 +143,8 @@ Trial contact() {
                draw_samples, fit);
 }
 
-// --- dots and rim
+// --- rim
 // ---------------------------------------------------------------------------------
-
-/// Twenty frames of 9 x 9 dots at rest, 0.06 px of noise.
-Trial dots() {
-  constexpr int rows = 9, cols = 9;
-  constexpr double noise_px = 0.06;
-  using Frame = cv::Mat_<cv::Vec2d>;
-  const auto measure = [=](Chance& chance) {
-    std::vector<Frame> frames;
-    for (int k = 0; k < 20; ++k) {
-      frames.emplace_back(rows, cols);
-      for (int i = 0; i < rows; ++i) {
-        for (int j = 0; j < cols; ++j) {
-          frames.back()(i, j) = {20.0 * j + noise_px * chance.normal(),
-                                 20.0 * i + noise_px * chance.normal()};
-        }
-      }
-    }
-    return frames;
-  };
-  const auto fit = [](const std::vector<Frame>& frames) {
-    const auto noise = fingerpad::dot_noise(frames);
-    return Estimate{{noise.noise_px}, diagonal({noise.noise_error_px})};
-  };
-  return trial({"noise_px"}, {noise_px}, 1, measure, draw_samples, fit);
-}
 
 /// Mean apexes of a free pad at four pressures, 0.005 mm of noise each.
 Trial rim() {
@@ -312,7 +286,6 @@ const std::map<std::string, Trial (*)()>& makers() {
   static const std::map<std::string, Trial (*)()> all = {{"absorption", absorption},
                                                          {"neighbour_light", neighbour_light},
                                                          {"contact", contact},
-                                                         {"dots", dots},
                                                          {"camera_plate", camera_plate},
                                                          {"cap", cap},
                                                          {"intensity", intensity},

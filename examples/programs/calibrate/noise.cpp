@@ -9,9 +9,9 @@
 #include "calibrate/recordings.hpp"
 #include "common/failure.hpp"
 #include "fingerpad/adapt/opencv.hpp"
-#include "fingerpad/calibrate/dot_noise.hpp"
 #include "fingerpad/calibrate/foam.hpp"
 #include "fingerpad/dots/dot_finder.hpp"
+#include "fingerpad/slip/stick_ratio.hpp"
 #include "replay/foam/recording.hpp"
 
 namespace calibrate {
@@ -37,10 +37,12 @@ Outcome dots(const Path& recording, const Path& sensor_file) {
   if (!finder.ok()) {
     replay::fail(recording / "free", "the first image shows " + finder.refusal());
   }
-  std::vector<cv::Mat_<cv::Vec2d>> frames;
+  fingerpad::StickRatio<> stick(finder.rows(), finder.cols());
+  const fingerpad::LazyView nothing_touches(finder.rows(), finder.cols(),
+                                            [](auto, auto) { return false; });
   Plot plot{"frame", "mean distance from frame 0 [px]", {}};
   follow(finder, pictures, [&](const cv::Mat_<cv::Vec2d>& dots) {
-    frames.push_back(dots.clone());
+    (void)stick(dots, nothing_touches);
     double sum = 0;
     int count = 0;
     for (int i = 0; i < dots.rows; ++i) {
@@ -53,16 +55,15 @@ Outcome dots(const Path& recording, const Path& sensor_file) {
     }
     plot.points.push_back({static_cast<double>(plot.points.size()), sum / count, 0});
   });
-  const auto noise = fingerpad::dot_noise(frames);
+  const double noise_px = stick.noise();
   // with independent noise in two pictures the mean distance is sqrt(pi) sigma
   for (PlotPoint& point : plot.points) {
-    point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise.noise_px : 0;
+    point.fitted = point.x > 0 ? std::sqrt(3.141592653589793) * noise_px : 0;
   }
-  Report report{.what = "dots", .residual = noise.noise_px, .residual_unit = "px (noise)"};
-  report.doubt(!noise.ok(), text_of(noise));
-  report.doubt(frames.size() < 5, "four frames are too few to estimate the noise: record twenty");
-  report.parameters = {{"noise_px", noise.noise_px, noise.noise_error_px},
-                       {"dots", static_cast<double>(noise.dots)}};
+  Report report{.what = "dots", .residual = noise_px, .residual_unit = "px (noise)"};
+  report.doubt(!(noise_px > 0), "no two pictures in a row differ and show the same dozen dots");
+  report.doubt(pictures.size() < 5, "four frames are too few to estimate the noise: record twenty");
+  report.parameters = {{"noise_px", noise_px}};
   Outcome outcome;
   outcome.reports = {report};
   outcome.plots = {plot};
