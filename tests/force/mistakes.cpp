@@ -274,10 +274,12 @@ std::function<void(test::TractionScene&)> renamed(const From& from) {
   };
 }
 
-void shift_by_one(test::TractionScene& s) {
+/// Each dot is taken for the one before it in its row or, if `in_columns`, in its column.
+void shift_by_one(test::TractionScene& s, bool in_columns = false) {
   for (Index i = 0; i < 21; ++i) {
     for (Index j = 0; j < 21; ++j) {
-      s.dots(i, j) = j < 20 ? s.dots(i, j + 1) : detail::missing_point<double>();
+      const Index row = i + (in_columns ? 1 : 0), col = j + (in_columns ? 0 : 1);
+      s.dots(i, j) = row < 21 && col < 21 ? s.dots(row, col) : detail::missing_point<double>();
     }
   }
 }
@@ -309,7 +311,7 @@ const std::vector<TractionMistake> traction_mistakes = {
        return DotIndex{20 - i, j};
      }),
      "no balance"},
-    {"shifted by one", shift_by_one, "free part loaded"},
+    {"shifted by one", [](auto& s) { shift_by_one(s); }, "free part loaded"},
     {"two halves exchanged", renamed([](Index i, Index j) {
        return DotIndex{i, j + 10};
      }),
@@ -347,12 +349,14 @@ TEST_CASE("mistakes with the traction field", "[mistakes]") {
     CHECK((!r.has_force() || is_finite(r.force_n)));
   }
   // dots that are off by one pitch would give a force with an error of its own size
-  for (test::TractionScene aside : test::traction_scenes()) {
-    shift_by_one(aside);
-    INFO(aside.name);
-    const auto r = field(aside.dots, aside.contact, aside.pressure_mpa);
-    CHECK(r.status == TractionStatus::free_part_loaded);
-    CHECK(r.is_pulled);
+  for (const bool in_columns : {false, true}) {
+    for (test::TractionScene aside : test::traction_scenes()) {
+      shift_by_one(aside, in_columns);
+      INFO(aside.name);
+      const auto r = field(aside.dots, aside.contact, aside.pressure_mpa);
+      CHECK(r.status == TractionStatus::free_part_loaded);
+      CHECK(r.is_pulled);
+    }
   }
   // the free pad's dots with contact flags: no force
   auto free = test::traction_scene("tilt");

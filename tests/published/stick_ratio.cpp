@@ -222,6 +222,16 @@ TEST_CASE("slides: every frame beyond U from the reference has an answer", "[pub
   CHECK(answers == 100);
 }
 
+TEST_CASE("slides: d_max is that of the dot that has moved most, whichever it is", "[published]") {
+  const StickRatioOptions options = {.cancels_rotation = false, .scale = StickScale::none};
+  for (Index k = 0; k < 81; ++k) {
+    const auto now = grid_of([&](Index i, Index j) {
+      return Point2<double>{0, 9 * i + j == k ? -3.0 : 0.5};
+    });
+    CHECK(answer_of(options, at_rest(), now).furthest_px == 3);
+  }
+}
+
 TEST_CASE("slides: a frame is stored by its distance from the newest stored one", "[published]") {
   StickRatioOptions options;
   options.moves_with_stick = options.follows_stick = false;
