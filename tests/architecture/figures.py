@@ -14,8 +14,8 @@ figure, or each of 1 / 2 / 3, is a number of the cell, rounded at most to its ow
 cell's unit % or without.
 
 1. The page, one row and one column exist, and the cell has the figure.
-2. In the pages of TRACED, a sentence without such a comment has no figure with a unit, unless its
-   paragraph ends with <!-- of no table: why -->.
+2. A paragraph whose figures with a unit have no such comment names a test or a benchmark that
+   exists, as code (`tests/...`, `bench/...`, `test_NAME "case*"`), or says <!-- of no table: why -->.
 3. In the table of the 36 methods each row names a header, a row of a report, and a test.
 """
 import re
@@ -24,11 +24,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-TRACED = ["detection_limits.md", "faq.md", "force/shear.md", "on_a_robot.md", "optics/optics.md", "papers.md", "peers.md",
-          "pipeline/fingertip.md", "pipeline/foam_hand.md", "results.md", "your_sensor.md"]
 NUMBER = r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?"
 MARK = re.compile(rf"({NUMBER}(?: / {NUMBER})*)((?: ?%)?)[^\d\n<>]{{0,12}}<!-- ([\w/]+\.md)(#[\w-]+)?: ([^:]+): ([^:]+?) -->")
 UNIT = re.compile(rf"(?<![\w.^-])({NUMBER}) ?(?:%|mm\b|px\b|N\b|N/mm|MPa|kPa|Hz|ms|us|degrees?\b|times\b)")
+SOURCE = re.compile(r"(?:\bbuild/[\w-]+/tests/)?\btest_(\w+)(?:[^`]*?\"([^\"\[*]+)\*?\")?|\b((?:tests|bench)/[\w./-]*\w)")
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 METHODS = "## The 36 methods and parts"
 
@@ -102,10 +101,10 @@ def fault_of(root, figure, percent, page, anchor, row, column):
 
 
 def paragraphs(text):
-    """Running text: no tables, headings, code, or lists of links."""
+    """Running text: no tables, headings, titles of tables, code, or lists of links."""
     text = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
     for block in re.split(r"\n\s*\n|\n(?=[-*] |\d+\. )", text):
-        if not block.lstrip().startswith(("|", "#", "<!--")):
+        if not block.lstrip().startswith(("|", "#", "<!--")) and not re.fullmatch(r"\*\*.*\*\*", block):
             yield block
 
 
@@ -119,12 +118,27 @@ def differences(root):
         marks = len(re.findall(r"<!-- [\w/]+\.md(?:#[\w-]+)?: ", text))
         if marks != len(MARK.findall(text)):
             yield f"{name}: {marks - len(MARK.findall(text))} comments have no figure before them"
-    for name in TRACED:
-        for block in paragraphs((root / "docs" / name).read_text()):
-            if "<!-- of no table:" not in block:
+        for block in paragraphs(text) if page.name != "CHANGELOG.md" else ():
+            sources = list(SOURCE.finditer(" ".join(" ".join(re.findall(r"`[^`]+`", block)).split())))
+            for source in sources:
+                if not exists(root, source):
+                    yield f"{name}: no such test or benchmark: {source[0]}"
+            if "<!-- of no table:" not in block and not sources:
                 for m in UNIT.finditer(COMMENT.sub("", MARK.sub("", block))):
-                    yield f"docs/{name}: no table is named for {m[0]}: {' '.join(block.split())[:60]}"
+                    yield f"{name}: no table is named for {m[0]}: {' '.join(block.split())[:60]}"
     yield from gaps(root)
+
+
+def exists(root, source):
+    """Whether there is a file, a program of bench/, or a test case of that name."""
+    program, case, file = source.groups()
+    if file:
+        name, folder = Path(file).name, root / Path(file).parent
+        return bool(list(root.glob(file + "*"))) or \
+            any(name in f.read_text() for f in folder.glob("CMakeLists.txt")) or \
+            any(f.stem in name for f in folder.rglob("*.cpp"))
+    files = list((root / "tests" / program).glob("*.cpp"))
+    return bool(files) and (not case or any(f'"{case}' in f.read_text() for f in files))
 
 
 def gaps(root):
@@ -153,6 +167,8 @@ PLANTED = {
     "no such row": ("docs/faq.md", "\n1 %<!-- papers.md: no such row: Published -->\n"),
     "no such page": ("docs/faq.md", "\n1 %<!-- no_such_page.md: a: b -->\n"),
     "no table named": ("docs/papers.md", "\nIt is 12 % better.\n"),
+    "no such test": ("docs/faq.md", "\nIt is 12 % better (`tests/no_such_test.cpp`).\n"),
+    "no such case": ("docs/faq.md", "\nIt is 12 % better (`test_force \"no such case*\"`).\n"),
     "no figure": ("docs/faq.md", "\nnone<!-- papers.md: share of the true M_z: Published -->\n"),
 }
 
@@ -161,7 +177,8 @@ def expect_planted(root):
     for kind, (name, plant) in PLANTED.items():
         with tempfile.TemporaryDirectory() as folder:
             copy = Path(folder)
-            (copy / "include").symlink_to(root / "include")
+            for folder in ("include", "tests", "bench"):
+                (copy / folder).symlink_to(root / folder)
             shutil.copytree(root / "docs", copy / "docs", ignore=shutil.ignore_patterns("*.png", "*.jpg"))
             file = copy / name
             file.write_text(file.read_text() + plant)

@@ -193,9 +193,10 @@ TEST_CASE("the slope of W is its derivative", "[absorption]") {
     const Digits50 c(test::log_uniform(1e-6, 1));
     const Digits50 l(test::uniform(1e-3, 14));
     const auto w = [&](const Digits50& z) { return scattered_light(z, c, p); };
-    const Digits50 by_difference = test::slope_by_difference(w, l, Digits50("1e-14"));
-    RC_ASSERT(test::relative_error(scattered_light_slope(l, c, p), by_difference) <
-              Digits50("1e-22"));
+    const Digits50 by_difference = test::slope_by_difference(w, l, Digits50(l * Digits50("1e-14")));
+    const Digits50 slope = scattered_light_slope(l, c, p);
+    // the slope falls to 1e-16 of W / l, which is what rounds
+    RC_ASSERT(abs(slope - by_difference) < Digits50("1e-25") * (slope + w(l) / l));
   });
 }
 
@@ -227,6 +228,31 @@ TEST_CASE("the forward model", "[absorption]") {
     RC_ASSERT(c.green == s.brightness);
     RC_ASSERT(c.red == s.brightness / s.fluid.kappa);
   });
+}
+
+TEST_CASE("what a change of light or a grey level is worth in depth", "[absorption]") {
+  const Absorption<> fluid;
+  const Camera<> camera;
+  const auto ray = ray_at_pixel(camera, camera.center_y_px + 20, camera.center_x_px);
+  const double brightness = 57, scattering = 0.0163;
+  for (const auto& [depth_mm, noise_mm] : {std::pair(1.0, 0.56), {6.0, 0.68}, {12.0, 0.87}}) {
+    CAPTURE(depth_mm);
+    const auto seen = colour_at_depth(fluid, ray, brightness, scattering, depth_mm);
+    const auto change_mm = [&, depth = depth_mm](double red, double green) {
+      return newton_depth(fluid, ray, scattering, {red, green}).depth_mm - depth;
+    };
+    // a lamp a tenth darker makes the depth a tenth smaller
+    CHECK(change_mm(0.9 * seen.red, 0.9 * seen.green) / depth_mm == Approx(-0.093).margin(0.011));
+    // one per cent of white balance
+    CHECK(change_mm(1.01 * seen.red, seen.green) == Approx(0.255).margin(0.04));
+    CHECK(change_mm(seen.red, 0.99 * seen.green) == Approx(0.19).margin(0.03));
+    // one grey level of noise in both colours
+    const double step = 0.01;
+    CHECK(
+        std::hypot(change_mm(seen.red + step, seen.green), change_mm(seen.red, seen.green + step)) /
+            step ==
+        Approx(noise_mm).epsilon(0.01));
+  }
 }
 
 TEST_CASE("the depth equation", "[absorption]") {

@@ -90,7 +90,9 @@ TEST_CASE("stick ratio: what moves as one in the image sticks, and its motion is
   const double turn_rad = 0.05, zoom = 1.03;
   SlippingDots dots;
   StickRatio<> stick(21, 21);
-  CHECK(stick(dots.dots, dots.contact).status == StickStatus::unmoved);
+  const auto first = stick(dots.dots, dots.contact);
+  CHECK(first.status == StickStatus::unmoved);
+  CHECK(first.scale == 1);
   const auto before = dots.dots;
   dots.step({.shift_px = 5, .direction_rad = 0.7, .turn_rad = turn_rad, .zoom = zoom});
   const auto r = stick(dots.dots, dots.contact);
