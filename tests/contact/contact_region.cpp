@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "fingerpad/optics/orthographic_camera.hpp"
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/contact_measures.hpp"
 #include "support/generators.hpp"
@@ -983,24 +982,4 @@ TEMPLATE_TEST_CASE(
     RC_ASSERT(!(S(1) < share));
     RC_ASSERT(!(share_at_end(jump, static_cast<S>(S(2) * gap), ring, patch) + S(1e-6) < share));
   });
-}
-
-TEST_CASE("contact region: a frame allocates nothing", "[contact_region]") {
-  const auto camera = test::height_map(60, 64, 0.32);
-  auto depth = test::depths_of<float>(camera, test::RoundFilm({}), 60, 64);
-  depth(3, 3) = static_cast<float>(test::nan);
-  ContactTest contact_test;
-  contact_test.ring_px = 5;
-  contact_test.places_edge = GENERATE(true, false);
-  ContactRegion<> region(camera, 60, 64, contact_test);
-  test::Image<Touch> mask(60, 64);
-  const long before = test::allocations();
-  Index found = 0;
-  for (int frame = 0; frame < 3; ++frame) {
-    found += region(depth, mask).contact_px;
-  }
-  const long after = test::allocations();
-  CHECK(before > 0);
-  CHECK(found > 1000);
-  CHECK(after == before);
 }

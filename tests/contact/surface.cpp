@@ -12,7 +12,6 @@
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/optics/orthographic_camera.hpp"
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
@@ -211,47 +210,6 @@ TEST_CASE("surface: grids of different sizes are refused", "[surface]") {
   CHECK_FALSE(r.ok());
   CHECK(r.pixels == 0);
   CHECK(std::isnan(r.rms_mm));
-}
-
-TEST_CASE("surface: every kind of grid gives the same bits", "[surface]") {
-  const auto camera = small_camera<Camera<double>>();
-  const Mask mask = disc(28, 41, 20);
-  Image<float> depth(height, width);
-  const Image<double> exact = Object::sphere({0.1, 0, 1}, 18).depths(camera);
-  std::copy(exact.cells.begin(), exact.cells.end(), depth.cells.begin());
-  const auto r = fit_surface(camera, depth, mask);
-  REQUIRE(r.ok());
-  CHECK(r.curvature_1_per_mm == Approx(1 / 18.0).epsilon(1e-5));
-  CHECK(r.rms_mm < 5e-7);  // 9 mm in float: 4.8e-7 between neighbouring numbers
-
-  Eigen::ArrayXXf depth_e(height, width);
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> mask_e(height, width);
-  cv::Mat_<float> depth_c(height, width);
-  cv::Mat_<unsigned char> mask_c(height, width);
-  test::ForeignImage<float> depth_f(height, width);
-  test::ForeignImage<int> mask_f(height, width);
-  std::vector<unsigned char> wide(static_cast<std::size_t>(height * width * 3), 99);
-  for (Index i = 0; i < height; ++i) {
-    for (Index j = 0; j < width; ++j) {
-      depth_e(i, j) = depth_c(static_cast<int>(i), static_cast<int>(j)) = depth(i, j);
-      mask_e(i, j) = mask(i, j) != 0;
-      mask_c(static_cast<int>(i), static_cast<int>(j)) = mask(i, j);
-      grid_traits<test::ForeignImage<float>>::at(depth_f, i, j) = depth(i, j);
-      grid_traits<test::ForeignImage<int>>::at(mask_f, i, j) = mask(i, j);
-      wide[static_cast<std::size_t>((i * width + j) * 3 + 1)] = mask(i, j);
-    }
-  }
-  const auto same = [&](const auto& d, const auto& m) {
-    const auto other = fit_surface(camera, d, m);
-    CHECK(other.rms_mm == r.rms_mm);
-    CHECK(other.curvature_2_per_mm == r.curvature_2_per_mm);
-  };
-  same(depth_e, mask_e);
-  same(depth_c, mask_c);
-  same(depth_f, mask_f);
-  same(depth_e, interleaved_channel(wide.data(), height, width, 3, 1, 3 * width));
-  same(depth,
-       LazyView(height, width, [&](Index i, Index j) { return mask(i, j) != 0 ? 1.0F : 0; }));
 }
 
 TEST_CASE("surface: a camera of another number is computed in double", "[surface]") {
@@ -634,22 +592,4 @@ TEST_CASE("surface: whatever comes in, an ok result holds finite numbers", "[sur
       RC_ASSERT((!r.ok() || r.normal.z > 0));
     });
   });
-}
-
-TEST_CASE("surface: a frame allocates nothing") {
-  using namespace fingerpad;
-  std::vector<float> depth(48 * 64);
-  std::vector<unsigned char> contact(48 * 64, 1);
-  for (std::size_t k = 0; k < depth.size(); ++k) {
-    depth[k] = 9.0F + 1e-3F * static_cast<float>(k % 64 * (k % 64));
-  }
-  const StridedView<float> view(depth.data(), 48, 64, 64);
-  const StridedView<unsigned char> mask(contact.data(), 48, 64, 64);
-  const long before = test::allocations();
-  const bool good = fit_surface(Camera<double>(), view, mask).ok() &&
-                    fit_surface(OrthographicCamera<double>(), view, mask).ok();
-  const long after = test::allocations();
-  CHECK(good);
-  CHECK(before > 0);
-  CHECK(after == before);
 }

@@ -109,11 +109,6 @@ TEMPLATE_TEST_CASE("W is accurate to 4 epsilon", "[absorption]", float, double) 
   }
 }
 
-TEST_CASE("absorption: names of the statuses of a pixel", "[absorption]") {
-  CHECK(std::string(name_of(PixelStatus::ok)) == "ok");
-  CHECK(std::string(name_of(PixelStatus::outside_pad)) == "outside pad");
-}
-
 TEST_CASE("W in 50 digits is the published closed form", "[absorption]") {
   rc::prop("to the digits that the closed form keeps", [] {
     const auto p = as<Digits50>(any_pencil());

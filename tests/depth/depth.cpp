@@ -13,9 +13,7 @@
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -525,28 +523,6 @@ TEST_CASE("a smoothed colour is the mean over the valid pixels of the window", "
   rc::prop("8 bit in double", compare_with_windows<std::uint8_t, double>);
 }
 
-TEST_CASE("the mean over whole windows has the bits of OpenCV's box filter", "[smoothing]") {
-  rc::prop("for green, which one window averages", [] {
-    Scene<std::uint8_t, float> scene(61, 93);
-    test::Random random(static_cast<std::uint64_t>(test::whole(0, 1 << 30)));
-    for (std::size_t k = 0; k < scene.frame.red.cells.size(); ++k) {
-      scene.frame.red.cells[k] = static_cast<std::uint8_t>(random.whole(1, 254));
-      scene.frame.green.cells[k] = static_cast<std::uint8_t>(random.whole(1, 254));
-    }
-    const int window_px = 3 + 2 * static_cast<int>(test::whole(0, 13));
-    const int inner = detail::two_windows(window_px, 1)[0];
-    const auto ours = scene.averaged(window_px);
-    cv::Mat_<std::uint8_t> green(61, 93, scene.frame.green.cells.data());
-    cv::Mat_<float> theirs;
-    cv::boxFilter(green, theirs, CV_32F, cv::Size(inner, inner));
-    for (int i = inner / 2; i < 61 - inner / 2; ++i) {
-      for (int j = inner / 2; j < 93 - inner / 2; ++j) {
-        RC_ASSERT(ours.green(i, j) == theirs(i, j));
-      }
-    }
-  });
-}
-
 TEST_CASE("the bias-free mean leaves a quadratic deviation as it is", "[smoothing]") {
   rc::prop("wherever both windows are whole", [] {
     // on the plate F is green - kappa red
@@ -687,71 +663,6 @@ TEMPLATE_TEST_CASE("what an invalid pixel holds changes no depth",
 }
 
 // The solution by polynomials.
-
-TEMPLATE_TEST_CASE("a block has the depths and statuses of its pixels one by one",
-                   "[depth]",
-                   float,
-                   double) {
-  using S = TestType;
-  using Limits = std::numeric_limits<S>;
-  constexpr auto block = static_cast<std::size_t>(detail::DepthPolynomial<S>::block);
-  Pad pad;
-  pad.camera.pixel_aspect = 1.2;
-  const detail::DepthPolynomial<S> rows(
-      pad.camera, pad.fluid, pad.base_radius_mm() / pad.camera.pitch_mm + 1, 0.8 * pad.scattering);
-  test::Random random(31);
-  const S odd[] = {Limits::quiet_NaN(),
-                   Limits::infinity(),
-                   -Limits::infinity(),
-                   S(0),
-                   S(-0.0),
-                   Limits::denorm_min(),
-                   S(-3),
-                   S(1e30),
-                   S(-1e30),
-                   (Limits::max)(),
-                   S(255)};
-  const auto any = [&](double low, double high) {
-    return random.uniform() < 0.04 ? odd[random.whole(0, 10)] : S(random.uniform(low, high));
-  };
-  std::array<S, block> red, green, per_g, depth;
-  std::array<PixelStatus, block> status;
-  std::array<Index, pixel_status_count> seen = {};
-  for (std::size_t n = 0; n < 1000000; n += block) {
-    const int row = static_cast<int>(random.whole(0, pad.rows - 1));
-    const int col = static_cast<int>(random.whole(0, pad.cols - 1));
-    for (std::size_t i = 0; i < block; ++i) {
-      green[i] = any(0, 120);
-      red[i] = any(0, 1) * S(40) + green[i];
-      per_g[i] = random.uniform() < 0.05 ? S(random.whole(-1, 0)) : any(50, 76);
-      if (random.uniform() < 0.02) {  // colours that a mean with negative weights may have
-        green[i] = any(-2000, 0);
-        red[i] = green[i] * S(random.uniform(0.98, 1.02));
-      }
-    }
-    rows.invert(row, col, red.data(), green.data(), per_g.data(), depth.data(), status.data());
-    for (std::size_t i = 0; i < block; ++i) {
-      const S u = rows.radius_sq(row, col + static_cast<int>(i));
-      const auto root = rows.root(u, red[i], green[i], per_g[i]);
-      const PixelStatus expected = !(per_g[i] > 0)             ? PixelStatus::outside_pad
-                                   : root.target < 0           ? PixelStatus::below_range
-                                   : root.target > root.total  ? PixelStatus::above_range
-                                   : root.target <= root.total ? PixelStatus::ok
-                                                               : PixelStatus::not_a_number;
-      const S expected_mm = expected == PixelStatus::ok ? root.depth_mm : Limits::quiet_NaN();
-      if (status[i] != expected || !test::within_ulps(depth[i], expected_mm, 2)) {
-        CAPTURE(u, red[i], green[i], per_g[i], depth[i], expected_mm);
-        CAPTURE(static_cast<int>(status[i]), static_cast<int>(expected));
-        FAIL("a block differs from its pixels");
-      }
-      ++seen[static_cast<std::size_t>(status[i])];
-    }
-  }
-  for (const PixelStatus s : {PixelStatus::ok, PixelStatus::below_range, PixelStatus::above_range,
-                              PixelStatus::not_a_number, PixelStatus::outside_pad}) {
-    CHECK(seen[static_cast<std::size_t>(s)] > 1000);
-  }
-}
 
 // The estimator.
 
@@ -909,29 +820,6 @@ TEST_CASE("a frame of another size is refused and nothing written", "[depth]") {
   // and the estimator remains usable
   test::Estimate<float> e(r, c);
   CHECK(estimator(good.red, good.green, e.depth_mm).ok());
-}
-
-TEST_CASE("threads may use copies of one estimator", "[depth]") {
-  const Pad pad = fine_pad();
-  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 4);
-  auto estimator = pad.estimator<float>({.window_px = 9});
-  const auto alone = test::estimate(estimator, frame);
-  std::vector<test::Estimate<float>> seen(4, {pad.rows, pad.cols});
-  std::vector<std::thread> threads;
-  for (test::Estimate<float>& to : seen) {
-    threads.emplace_back([&frame, &to, own = estimator]() mutable {
-      for (int again = 0; again < 5; ++again) {
-        (void)own(frame.red, frame.green, to.depth_mm, to.status);
-      }
-    });
-  }
-  for (std::thread& thread : threads) {
-    thread.join();
-  }
-  for (const test::Estimate<float>& by : seen) {
-    CHECK(test::same_bits(by.depth_mm, alone.depth_mm));
-    CHECK(by.status.cells == alone.status.cells);
-  }
 }
 
 TEST_CASE("a 16-bit frame of 256 times the 8-bit levels has the same depth", "[depth]") {
@@ -1821,61 +1709,4 @@ TEST_CASE("depth by polynomials, for ranges of 14.5 and 18 mm", "[depth]") {
   CAPTURE(max_depth_mm, single, twice);
   CHECK(single <= bound_mm::polynomial_float);
   CHECK(twice <= bound_mm::polynomial_double);
-}
-
-namespace {
-
-/// Allocations of three frames.
-template <class S, class Red, class Green>
-long taken(DepthEstimator<S>& estimator, const Red& red, const Green& green) {
-  test::Estimate<S> e(rows(red), cols(red));
-  const long before = test::allocations();
-  for (int again = 0; again < 3; ++again) {
-    (void)estimator(red, green, e.depth_mm, e.status);
-    (void)estimator(red, green, e.depth_mm);
-  }
-  return test::allocations() - before;
-}
-
-}  // namespace
-
-TEMPLATE_TEST_CASE("no frame takes memory",
-                   "[depth]",
-                   (Kind<std::uint8_t, float>),
-                   (Kind<std::uint16_t, float>),
-                   (Kind<float, float>),
-                   (Kind<std::uint8_t, double>),
-                   (Kind<double, double>)) {
-  using S = typename TestType::Scalar;
-  using Pixel = typename TestType::Pixel;
-  const Pad pad;
-  auto frame = pad.frame<Pixel>(pad.pressed_depths(3));
-  for (std::size_t k = 0; k < frame.red.cells.size(); k += 5) {
-    frame.red.cells[k] = test::stored<Pixel>(k % 2 == 0 ? 0 : 255);
-  }
-  for (const int window_px : {1, 29}) {
-    const auto first = pad.estimator<S>({.window_px = window_px});
-    const long before = test::allocations();
-    DepthEstimator<S> estimator = first;
-    CHECK(test::allocations() > before);  // the counter works
-    CHECK(taken(estimator, frame.red, frame.green) == 0);
-    if constexpr (std::is_same_v<Pixel, std::uint8_t>) {
-      cv::Mat image(static_cast<int>(pad.rows), static_cast<int>(pad.cols), CV_8UC3);
-      image = cv::Scalar(10, 50, 60);
-      CHECK(taken(estimator, channel<const Pixel>(image, 2), channel<const Pixel>(image, 1)) == 0);
-    }
-  }
-}
-
-TEST_CASE("no frame takes memory as printed", "[depth]") {
-  const Pad pad;
-  const auto free = pad.free_depths();
-  const auto frame = pad.frame<std::uint8_t>(free);
-  published::DepthEstimator<double> estimator(pad.published(), frame.red, frame.green, free);
-  test::Image<double> depth(pad.rows, pad.cols);
-  const long before = test::allocations();
-  for (int again = 0; again < 3; ++again) {
-    (void)estimator(frame.red, frame.green, depth);
-  }
-  CHECK(test::allocations() == before);
 }

@@ -256,49 +256,6 @@ TEST_CASE("neighbour light: absurd depths stay finite and harm nobody") {
   }
 }
 
-TEST_CASE("neighbour light: same bits on every grid") {
-  const Index rows = 31, cols = 45;
-  const Map<float> reference = membrane(rows, cols, 0, 0).cast<float>();
-  Map<float> depth = membrane(rows, cols, 2, 1).cast<float>();
-  depth(10, 20) = std::nanf("");
-  const NeighbourLight<float> light{9, 0.002F, 0.2F};
-  const Map<float> expected = compensated(light, reference, depth);
-  NeighbourLightCompensation<> compensation(light, 0.125F, reference);
-
-  const Eigen::ArrayXXf column_major = depth;
-  Eigen::ArrayXXf column_major_out(rows, cols);
-  REQUIRE(compensation(column_major, column_major_out) == FrameStatus::ok);
-  CHECK(identical(column_major_out, expected));
-
-  cv::Mat_<float> image(static_cast<int>(rows), static_cast<int>(cols));
-  xt::xtensor<float, 2> tensor = xt::zeros<float>({rows, cols});
-  test::ForeignImage<float> foreign(rows, cols);
-  for (Index i = 0; i < rows; ++i) {
-    for (Index j = 0; j < cols; ++j) {
-      image(static_cast<int>(i), static_cast<int>(j)) = depth(i, j);
-      tensor(i, j) = depth(i, j);
-      grid_traits<test::ForeignImage<float>>::at(foreign, i, j) = depth(i, j);
-    }
-  }
-  REQUIRE(compensation(image, image) == FrameStatus::ok);  // in place
-  CHECK(identical(as_view(image), expected));
-  REQUIRE(compensation(tensor, tensor) == FrameStatus::ok);
-  CHECK(identical(as_view(tensor), expected));
-  REQUIRE(compensation(foreign, foreign) == FrameStatus::ok);
-  CHECK(identical(as_view(foreign), expected));
-
-  Map<float> out(rows, cols);
-  const LazyView lazy(rows, cols, [&](Index i, Index j) { return depth(i, j); });
-  REQUIRE(compensation(lazy, out) == FrameStatus::ok);
-  CHECK(identical(out, expected));
-  Map<float> flipped = depth.colwise().reverse();
-  const auto down = as_view(flipped);
-  const StridedView<float> up(down.row(rows - 1), rows, cols, -down.row_stride(),
-                              down.col_stride());
-  REQUIRE(compensation(up, up) == FrameStatus::ok);
-  CHECK(identical(up, expected));
-}
-
 TEST_CASE("neighbour light: other sizes are refused and nothing is written") {
   const Map<float> reference = Map<float>::Constant(8, 9, 1.0F);
   NeighbourLightCompensation<> compensation({}, 0.1F, reference);

@@ -505,21 +505,6 @@ TEST_CASE("dots: where they cannot be, none is found") {
   CHECK(finder.cols() == 6);
 }
 
-TEST_CASE("dots: a finder is a value") {
-  Print print;
-  const DotPlaces truth = test::places_of(print);
-  DotFinder finder(test::picture_of(print, truth));
-  REQUIRE(finder.ok());
-  const cv::Mat one = test::picture_of(print, test::moved(truth, {4, 0}));
-  const cv::Mat two = test::picture_of(print, test::moved(truth, {8, 1}));
-  DotPlaces dots(truth.size()), again(truth.size());
-  CHECK(finder(one, dots).ok());
-  DotFinder copy = finder;
-  CHECK(finder(two, dots).ok());
-  CHECK(copy(two, again).ok());
-  CHECK(same(dots, again));
-}
-
 TEST_CASE("dots: options that cannot be are refused with their name") {
   const Print print;
   const cv::Mat frame = test::picture_of(print, test::places_of(print));

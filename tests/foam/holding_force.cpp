@@ -234,22 +234,6 @@ TEST_CASE("loosening until the object slips counts the steps of warning", "[hold
   CHECK(now.warning_steps == 8);
 }
 
-TEST_CASE("loosening: without settling, one look at each force", "[holding_force]") {
-  auto plan = short_plan();
-  plan.settle_samples = 0;
-  plan.watch_samples = 1;
-  const LoosenUntilPreslip<double> search(plan);
-  CHECK(phases(search, "----") == "ssAA");
-  CHECK(forces(search, "----") == "8777");
-  CHECK(phases(search, "-p") == "sF");
-  CHECK(forces(search, "-p") == "89");
-  plan.watch_samples = 2;
-  CHECK(phases(LoosenUntilPreslip<double>(plan), "-------") == "wswswAA");
-  plan.settle_samples = 1;
-  plan.watch_samples = 1;
-  CHECK(phases(LoosenUntilPreslip<double>(plan), "-------") == "sssssAA");
-}
-
 TEST_CASE("loosening: forces do not collect rounding, and the last step may be short",
           "[holding_force]") {
   LoosenOptions<double> plan{.first_force_n = 10,
@@ -271,50 +255,6 @@ TEST_CASE("loosening: forces do not collect rounding, and the last step may be s
   plan.step_n = 1000;  // one step to the least force
   CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
   CHECK(told(LoosenUntilPreslip<double>(plan), "--").phase == SearchPhase::at_limit);
-}
-
-TEST_CASE("searches: signal that is missing changes nothing", "[holding_force]") {
-  const LoosenUntilPreslip<double> loosen(short_plan());
-  CHECK(phases(loosen,
-               "m-m-m-mm--m"
-               "--m--p") ==
-        "ssssswwwwss"
-        "ssswwF");
-  const LiftWithRegrip<double> lift(short_lift());
-  CHECK(phases(lift, "mpmmm-m-m-m") == "wssssssssww");
-  CHECK(told(lift, "mmmm").height_mm == 0);
-  CHECK(told(loosen, std::string(1000, 'm')).force_n == 9);
-}
-
-TEST_CASE("searches: an end is an end", "[holding_force]") {
-  const LoosenUntilPreslip<double> loosen(short_plan());
-  for (const std::string end : {"--p", "x", "---------------"}) {
-    for (const std::string more : {"-", "p", "x", "m", "--pp--xx--mm"}) {
-      CAPTURE(end, more);
-      auto state = loosen;
-      const auto before = tell(state, end);
-      CHECK(is_end(before.phase));
-      const auto after = tell(state, more);
-      CHECK(after.phase == before.phase);
-      CHECK(after.force_n == before.force_n);
-      CHECK(after.steps == before.steps);
-      CHECK(state.command().force_n == before.force_n);
-    }
-  }
-  const LiftWithRegrip<double> lift(short_lift());
-  for (const std::string end : {"---", "-x", "-p--p--p"}) {
-    for (const std::string more : {"-", "p", "x", "m", "--pp--xx--mm"}) {
-      CAPTURE(end, more);
-      auto state = lift;
-      const auto before = tell(state, end);
-      CHECK(is_end(before.phase));
-      const auto after = tell(state, more);
-      CHECK(after.phase == before.phase);
-      CHECK(after.force_n == before.force_n);
-      CHECK(after.height_mm == before.height_mm);
-      CHECK(after.steps == before.steps);
-    }
-  }
 }
 
 TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
@@ -452,15 +392,6 @@ TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_
   CHECK(refusal_of(Lift{.first_force_n = 20}) == "accepted");  // nothing to tighten
   CHECK(refusal_of(Lift{.force_step_n = 1.95e-5}) == "accepted");
   CHECK(refusal_of(Lift{.height_step_mm = 5.1e-5, .settle_samples = 0}) == "accepted");
-}
-
-TEST_CASE("searches: names, ends and plans", "[holding_force]") {
-  const std::string names[] = {"settling", "watching", "found", "lifted", "at limit", "slipped"};
-  for (int k = 0; k < 6; ++k) {
-    CHECK(name_of(static_cast<SearchPhase>(k)) == names[k]);
-    CHECK(is_end(static_cast<SearchPhase>(k)) == (k >= 2));
-  }
-  CHECK(std::string(name_of(static_cast<SearchPhase>(99))) == "unknown");
 }
 
 TEMPLATE_TEST_CASE("searches: in any number",

@@ -132,17 +132,6 @@ TEST_CASE("grasp-optimise: every clause of the rule is needed", "[preslip]") {
   CHECK(holds(rule, Hand<2>{felt(3, 5), felt(4, 5)}, Hand<2>{felt(4, 5), felt(3, 5)}));
 }
 
-TEST_CASE("grasp-optimise: the last of three fingers counts as the first", "[preslip]") {
-  const Hand<3> older{felt(1, 2), felt(1, 3), felt(1, 4)};
-  const Hand<3> later{felt(2, 2), felt(2, 3), felt(2, 4)};
-  CHECK(holds(PreslipRule::printed_grasp_optimise, older, later));
-  for (std::size_t finger = 0; finger < 3; ++finger) {
-    Hand<3> same = later;
-    same[finger].location = 1;
-    CHECK_FALSE(holds(PreslipRule::printed_grasp_optimise, older, same));
-  }
-}
-
 TEST_CASE("grasp-lift: every clause of the rule is needed", "[preslip]") {
   const PreslipRule rule = PreslipRule::printed_grasp_lift;
   const Sample older = felt(3, 4, 1, 1), later = felt(5, 6, 2, 2);
@@ -204,17 +193,6 @@ TEST_CASE("centroids differ from beyond the tolerance on", "[preslip]") {
   CHECK(pair(PreslipRule::printed_grasp_lift, felt(3, 4, 0, 1), felt(5, 6, 5e-324, 1), exact));
 }
 
-TEST_CASE("centroids differ along any axis", "[preslip]") {
-  const auto differ = [](double x_mm, double y_mm) {
-    return pair(PreslipRule::printed_grasp_lift, felt(3, 4, 1, 1), felt(5, 6, 1 + x_mm, 1 + y_mm));
-  };
-  CHECK_FALSE(differ(0, 0));
-  CHECK(differ(1, 0));
-  CHECK(differ(0, -1));
-  CHECK(differ(1, -1));
-  CHECK(differ(-1, 1));
-}
-
 TEST_CASE("samples with fewer waves than asked for are silent", "[preslip]") {
   const auto optimise = [](Index waves, Index least) {
     return pair(PreslipRule::printed_grasp_optimise, felt(3, waves), felt(4, waves),
@@ -264,69 +242,6 @@ TEST_CASE("waves and locations out of range", "[preslip]") {
   CHECK(pair(PreslipRule::printed_grasp_optimise, felt(max_index, 2), felt(4, 2)));
 }
 
-TEST_CASE("pre-slip: the newest sample makes a pair with any that the history still holds",
-          "[preslip]") {
-  Preslip<> preslip(2, {.rule = PreslipRule::printed_grasp_optimise, .history = 5});
-  const auto see = [&](const Sample& sample) {
-    return preslip(all<2>(sample)) == PreslipStatus::preslip;
-  };
-  CHECK_FALSE(see(felt(3, 5)));  // no sample to compare with
-  CHECK_FALSE(see(felt(3, 5)));
-  CHECK(see(felt(4, 5)));
-  for (int k = 0; k < 5; ++k) {
-    CHECK_FALSE(see(silent()));
-  }
-  CHECK_FALSE(see(felt(1, 2)));
-  CHECK(see(felt(2, 2)));
-  CHECK_FALSE(see(felt(2, 3)));
-  CHECK(see(felt(2, 2)));  // with the older sample, which is still stored
-  CHECK(see(felt(1, 2)));
-  CHECK_FALSE(see(felt(2, 3)));
-  CHECK(see(felt(1, 2)));  // not with the previous sample, which is at the same place
-  for (const int between : {3, 4}) {
-    preslip.reset();
-    CHECK_FALSE(see(felt(3, 5)));  // all samples are forgotten
-    for (int k = 0; k < between; ++k) {
-      CHECK_FALSE(see(silent()));
-    }
-    CHECK(see(felt(4, 5)) == (between == 3));  // with the oldest sample, or after it has left
-  }
-}
-
-TEST_CASE("pre-slip: what a lift stirs up", "[preslip]") {
-  Preslip<> preslip(2, {.rule = PreslipRule::printed_grasp_lift, .history = 4});
-  const auto see = [&](const Sample& sample) {
-    return preslip(Hand<2>{silent(5, 5), sample}) == PreslipStatus::preslip;
-  };
-  CHECK_FALSE(see(felt(3, 2, 1, 1)));
-  CHECK_FALSE(see(felt(4, 2, 2, 2)));  // not more waves
-  CHECK(see(felt(4, 3, 2, 2)));        // than the first, elsewhere
-  CHECK(see(felt(5, 3, 3, 3)));        // than the second
-  CHECK(see(felt(5, 3, 3, 3)));
-  CHECK_FALSE(see(felt(5, 2, 3, 3)));
-  CHECK_FALSE(see(silent(3, 3)));
-  CHECK_FALSE(see(felt(6, 1, 3, 3)));  // at a silent sample
-  CHECK(see(felt(6, 1, 4, 4)));
-  CHECK_FALSE(see(silent(none, none)));
-  CHECK_FALSE(see(silent(none, none)));
-  CHECK_FALSE(see(felt(6, 9, 8, 8)));  // was at this place, or not pressed
-  CHECK_FALSE(see(felt(7, 9, 8, 8)));
-  CHECK(see(felt(7, 10, 9, 9)));
-}
-
-TEST_CASE("pre-slip: the shortest history", "[preslip]") {
-  Preslip<> preslip(1, {.rule = PreslipRule::printed_grasp_optimise, .history = 2});
-  const auto see = [&](const Sample& sample) {
-    return preslip(Hand<1>{sample}) == PreslipStatus::preslip;
-  };
-  CHECK_FALSE(see(felt(3, 5)));
-  CHECK(see(felt(4, 5)));
-  CHECK_FALSE(see(felt(4, 5)));
-  CHECK(see(felt(3, 5)));
-  CHECK_FALSE(see(silent()));
-  CHECK_FALSE(see(felt(4, 5)));
-}
-
 TEST_CASE("pre-slip: a sample that is refused, or of another hand, is not added", "[preslip]") {
   Preslip<> preslip(2, {.rule = PreslipRule::printed_grasp_optimise, .history = 2});
   Sample refused;
@@ -364,10 +279,6 @@ TEST_CASE("pre-slip: bad parameters are refused by name, value and range", "[pre
 TEST_CASE("pre-slip: what is written down of itself", "[preslip]") {
   CHECK(test::refusal([] { Preslip<>(0); }) == "Preslip: fingers = 0, must be in [1, 100]");
   CHECK(test::refusal([] { Preslip<>(101); }) == "Preslip: fingers = 101, must be in [1, 100]");
-  CHECK(std::string(name_of(PreslipRule::grasp_lift)) == "grasp_lift");
-  CHECK(std::string(name_of(PreslipRule::grasp_optimise)) == "grasp_optimise");
-  CHECK(std::string(name_of(PreslipRule::printed_grasp_lift)) == "printed_grasp_lift");
-  CHECK(std::string(name_of(PreslipRule::printed_grasp_optimise)) == "printed_grasp_optimise");
 }
 
 TEST_CASE("rules take all taxels that vibrate", "[preslip]") {
@@ -429,11 +340,6 @@ TEST_CASE("a finger that cannot be judged makes no pair", "[preslip]") {
   Sample restless = later;
   restless.has_rested = false;
   CHECK_FALSE(pair(PreslipRule::grasp_lift, older, restless));
-  CHECK(std::string(name_of(PreslipStatus::cannot_tell)) == "cannot tell");
-  CHECK(std::string(name_of(PreslipStatus::steady)) == "steady");
-  CHECK(std::string(name_of(PreslipStatus::preslip)) == "preslip");
-  CHECK(std::string(name_of(PreslipStatus::slipped)) == "slipped");
-  CHECK(std::string(name_of(static_cast<PreslipStatus>(9))) == "unknown");
 }
 
 TEST_CASE("finger sample: when it is pressed, and when it vibrates", "[preslip]") {
@@ -447,12 +353,6 @@ TEST_CASE("finger sample: when it is pressed, and when it vibrates", "[preslip]"
   CHECK(felt(0, 1, 0, 0).is_pressed());
   CHECK_FALSE(felt(0, 1, none, 0).is_pressed());
   CHECK_FALSE(felt(0, 1, 0, infinity).is_pressed());
-  CHECK(std::string(name_of(TaxelStatus::vibrating)) == "vibrating");
-  CHECK(std::string(name_of(TaxelStatus::quiet)) == "quiet");
-  CHECK(std::string(name_of(TaxelStatus::filling)) == "filling");
-  CHECK(std::string(name_of(TaxelStatus::no_taxels)) == "no taxels");
-  CHECK(std::string(name_of(TaxelStatus::refused)) == "refused");
-  CHECK(std::string(name_of(static_cast<TaxelStatus>(99))) == "unknown");
 }
 
 namespace {
@@ -720,48 +620,6 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
   });
 }
 
-TEST_CASE("pre-slip: what is not in the history makes no alarm", "[preslip][law]") {
-  rc::prop("silence", [] {
-    auto history = any_history<2>();
-    Options options = any_options();
-    options.min_waves = test::whole(1, 2);
-    const std::size_t samples = history.size();
-    Bits bits;
-    for (Index k = 0; k < options.history; ++k) {
-      Hand<2> silent;
-      for (auto& sample : silent) {
-        sample.status = TaxelStatus::vibrating;
-        if (bits(0, 4) > 0) {
-          sample.add_vibration(bits(0, 3), bits(0, options.min_waves - 1));
-        }
-        sample.center_x_mm = static_cast<double>(bits(-3, 3)) / 8;
-        sample.center_y_mm = static_cast<double>(bits(-3, 3)) / 8;
-      }
-      history.push_back(silent);
-    }
-    for (const PreslipRule rule : all_rules) {
-      const Results results = run(rule, history, options);
-      for (std::size_t k = samples; k < results.size(); ++k) {
-        RC_ASSERT(!results[k]);
-      }
-    }
-  });
-  rc::prop("what came before the history is forgotten", [] {
-    const auto history = any_history<2>();
-    const auto past = any_history<2>();
-    const Options options = any_options();
-    auto all = past;
-    all.insert(all.end(), history.begin(), history.end());
-    for (const PreslipRule rule : all_rules) {
-      const Results alone = run(rule, history, options);
-      const Results after = run(rule, all, options);
-      for (std::size_t k = static_cast<std::size_t>(options.history) - 1; k < alone.size(); ++k) {
-        RC_ASSERT(alone[k] == after[past.size() + k]);
-      }
-    }
-  });
-}
-
 TEST_CASE("pre-slip: what can only add an alarm", "[preslip][law]") {
   rc::prop("a longer history", [] {
     const auto history = any_history<2>();
@@ -803,29 +661,6 @@ TEST_CASE("pre-slip: what can only add an alarm", "[preslip][law]") {
   });
 }
 
-TEST_CASE("pre-slip: a copy gives the same answers", "[preslip][law]") {
-  rc::prop("from any sample on", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    const std::size_t at =
-        static_cast<std::size_t>(test::whole(0, static_cast<std::ptrdiff_t>(history.size()) - 1));
-    for (const PreslipRule rule : all_rules) {
-      Preslip<> preslip(2, with(rule, options));
-      for (std::size_t k = 0; k < at; ++k) {
-        (void)preslip(history[k]);
-      }
-      auto copy = preslip;
-      std::vector<PreslipStatus> first;
-      for (std::size_t k = at; k < history.size(); ++k) {
-        first.push_back(preslip(history[k]));
-      }
-      for (std::size_t k = at; k < history.size(); ++k) {
-        RC_ASSERT(first[k - at] == copy(history[k]));
-      }
-    }
-  });
-}
-
 namespace {
 
 constexpr double largest = (std::numeric_limits<double>::max)();
@@ -844,37 +679,7 @@ FingerSample<S> felt(Index location, Index waves, double x_mm = 0, double y_mm =
   return sample;
 }
 
-/// The number of samples with an alarm. Sample k is hand(k).
-template <class Make>
-int alarms(int samples, Index history, const Make& hand, PreslipRule rule) {
-  Preslip<> preslip(2, {.rule = rule, .history = history});
-  int count = 0;
-  for (int k = 0; k < samples; ++k) {
-    count += preslip(hand(k)) == PreslipStatus::preslip ? 1 : 0;
-  }
-  return count;
-}
-
 }  // namespace
-
-TEST_CASE("pre-slip: a hundred thousand samples alike", "[preslip]") {
-  constexpr int samples = 100000;
-  const PreslipRule optimise = PreslipRule::printed_grasp_optimise;
-  const auto alike = [](int) { return Hand<2>{felt(3, 5), felt(4, 5)}; };
-  CHECK(alarms(samples, 50, alike, optimise) == 0);
-  CHECK(alarms(samples, 50, alike, PreslipRule::printed_grasp_lift) == 0);
-  // two alternating places: from the second sample on, each makes a pair with the previous one
-  const auto in_turn = [](int k) { return Hand<2>{felt(k % 2, 5), felt(1 - k % 2, 5)}; };
-  CHECK(alarms(samples, 50, in_turn, optimise) == samples - 1);
-  // a wave every 60 samples, each at another place: the history never holds two of them
-  const auto seldom = [](int k) {
-    const Index location = k % 60 == 0 ? k / 60 % 7 : FingerSample<>::no_location;
-    return Hand<2>{felt(location, 5), felt(location, 5)};
-  };
-  CHECK(alarms(samples, 50, seldom, optimise) == 0);
-  // now it does: each meets the previous one for one sample
-  CHECK(alarms(samples, 61, seldom, optimise) == (samples - 1) / 60);
-}
 
 TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
   const auto lift = [](double a_mm, double b_mm, double tolerance_mm) {
@@ -973,69 +778,6 @@ TEST_CASE("pre-slip: a derivative that is not a number changes nothing", "[presl
   auto older = felt<S>(1, 1, 0, 0), later = felt<S>(2, 2, 1, 0);
   later.center_x_mm.d = none;
   CHECK(holds(PreslipRule::printed_grasp_lift, Hand<1, S>{older}, Hand<1, S>{later}));
-}
-
-TEST_CASE("pre-slip: a pair as old as a history", "[preslip]") {
-  const auto first = felt(1, 1, 0, 0), silent = felt(FingerSample<>::no_location, 0, none, none);
-  for (const Index history : {3000, 100000}) {
-    for (const PreslipRule rule :
-         {PreslipRule::printed_grasp_lift, PreslipRule::printed_grasp_optimise}) {
-      Preslip<> preslip(1, {.rule = rule, .history = history});
-      const auto last = felt(2, rule == PreslipRule::printed_grasp_optimise ? 1 : 2, 1, 1);
-      for (const Index between : {history - 2, history - 1}) {
-        preslip.reset();
-        (void)preslip(Hand<1>{first});
-        for (Index k = 0; k < between; ++k) {
-          (void)preslip(Hand<1>{silent});
-        }
-        const PreslipStatus status = preslip(Hand<1>{last});
-        CHECK((status == PreslipStatus::preslip) == (between == history - 2));
-        CHECK(preslip(Hand<1>{silent}) == PreslipStatus::steady);
-      }
-    }
-  }
-}
-
-namespace {
-
-template <class S>
-std::array<FingerSample<S>, 2> hand(int k) {
-  std::array<FingerSample<S>, 2> now;
-  for (int f = 0; f < 2; ++f) {
-    FingerSample<S>& finger = now[static_cast<std::size_t>(f)];
-    const int seed = k + f;
-    finger.status = TaxelStatus::vibrating;
-    finger.add_vibration(seed % 7, seed % 11 % 5);
-    finger.center_x_mm = S(seed % 3) / S(4);
-    finger.center_y_mm = seed % 13 == 0 ? not_a_number<S>() : S(seed % 5) / S(4);
-  }
-  return now;
-}
-
-}  // namespace
-
-TEMPLATE_TEST_CASE(
-    "pre-slip: a sample allocates nothing", "[preslip]", float, double, test::Tangent<double>) {
-  for (const PreslipRule rule :
-       {PreslipRule::grasp_lift, PreslipRule::grasp_optimise, PreslipRule::printed_grasp_lift,
-        PreslipRule::printed_grasp_optimise}) {
-    const long at_start = test::allocations();
-    Preslip<TestType> preslip(2, {.rule = rule, .history = 40});
-    CHECK(test::allocations() > at_start);
-    const auto copied = preslip;
-    int alarms = 0;
-    const long before = test::allocations();
-    for (int k = 0; k < 300; ++k) {
-      if (k == 200) {
-        preslip.reset();
-      }
-      const auto now = hand<TestType>(k * k);
-      alarms += preslip(now) == PreslipStatus::preslip ? 1 : 0;
-    }
-    preslip = copied;  // of the same size: the memory exists
-    CHECK(test::allocations() == before);
-    CHECK(alarms > 0);
-  }
 }
 
 TEST_CASE("searches for the holding force: nothing is allocated", "[holding_force]") {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "fingerpad/foam/taxels.hpp"
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -190,16 +189,6 @@ TEST_CASE("taxel features: as many waves as a sine has in the window", "[taxel_f
   }
 }
 
-TEST_CASE("taxel features: rms of the vibrating taxel", "[taxel_features]") {
-  // of the power of w whole waves in n samples, a line takes at most
-  //   6 / ((n^2 - 1) sin(pi w / n)^2)
-  const TaxelFeatures features(3, 5, options());
-  const double line = 6 / (255 * 0.5);
-  const double rms = after(features, 40, Sine{4}).deviation;
-  CHECK(rms <= 3 / std::sqrt(2.0) * (1 + 1e-12));
-  CHECK(rms >= 3 / std::sqrt(2.0) * std::sqrt(1 - line));
-}
-
 TEST_CASE("taxel features: a step is one wave that has begun", "[taxel_features]") {
   const TaxelFeatures features(3, 5, options());
   const auto step = [](int at) {
@@ -210,13 +199,6 @@ TEST_CASE("taxel features: a step is one wave that has begun", "[taxel_features]
   CHECK(after(features, 24, step(23)).location == 6);
   CHECK(after(features, 24, step(8)).status == TaxelStatus::quiet);  // out of the window
   CHECK(after(features, 24, step(9)).status == TaxelStatus::vibrating);
-}
-
-TEST_CASE("taxel features: an even change of load is no vibration", "[taxel_features]") {
-  const auto ramp = [](int k, Index i, Index j) {
-    return 100 + 3.0 * k + 0.1 * static_cast<double>(i * j) * k;
-  };
-  CHECK(after(TaxelFeatures(3, 5, options()), 100, ramp).status == TaxelStatus::quiet);
 }
 
 TEST_CASE("taxel features: noise that crosses the mean is not counted within the hysteresis",
@@ -519,25 +501,6 @@ TEST_CASE("taxel features: readings in any number", "[taxel_features]") {
   same(float());
 }
 
-TEMPLATE_TEST_CASE(
-    "taxel features: any scalar", "[taxel_features]", float, long double, test::Digits50) {
-  using S = TestType;
-  TaxelOptions o;
-  o.pitch_mm = 2;
-  o.sample_period_s = 1. / 64;
-  o.noise = 0.125;
-  TaxelFeatures<S> finger(2, 2, o);
-  FingerSample<S> sample;
-  for (int k = 0; k < 20; ++k) {
-    Image<double> taxels(2, 2, 8.0);
-    taxels(1, 0) = k % 4 < 2 ? 9 : 7;
-    sample = finger(taxels, k / 64.0);
-  }
-  CHECK(sample.location == 2);
-  CHECK(sample.waves == 4);
-  CHECK(static_cast<double>(value(sample.center_x_mm)) == Approx(2 * 16.0 / 31));
-}
-
 TEST_CASE("taxel features: derivative of the centroid", "[taxel_features]") {
   using S = test::Tangent<double>;
   TaxelFeatures<S> finger(1, 2, {.noise = 0.1});
@@ -577,16 +540,6 @@ TEST_CASE("taxel features: bad parameters are refused by name", "[taxel_features
         "TaxelFeatures: rows = 0, must be in [1, 1000000]");
   CHECK(test::refusal([] { TaxelFeatures<>(5, 1000001); }) ==
         "TaxelFeatures: cols = 1000001, must be in [1, 1000000]");
-}
-
-TEST_CASE("taxel features: every status has a name", "[taxel_features]") {
-  std::string all;
-  for (int k = 0; k < 9; ++k) {
-    all += std::string(name_of(static_cast<TaxelStatus>(k))) + ", ";
-  }
-  CHECK(all ==
-        "vibrating, quiet, filling, no taxels, frozen, too weak, clock jumps, refused, "
-        "unknown, ");
 }
 
 namespace {
@@ -749,22 +702,6 @@ TEST_CASE("taxel features: laws", "[taxel_features]") {
     const auto plain = features_of(features, recording);
     for (std::size_t n = 0; n < plain.size(); ++n) {
       same_vibration(plain[n], finger(recording[n], static_cast<double>(n) + later));
-    }
-  });
-
-  rc::prop("a copy of the finger goes on like the finger", [] {
-    const auto recording = any_recording(2, 3, 60);
-    const Features features(2, 3, any_options());
-    const auto plain = features_of(features, recording);
-    const std::size_t at = static_cast<std::size_t>(test::whole(1, 59));
-    auto finger = features;
-    for (std::size_t n = 0; n < at; ++n) {
-      finger(recording[n], static_cast<double>(n));
-    }
-    auto copy = finger;
-    finger(recording[0], 1e6);
-    for (std::size_t n = at; n < plain.size(); ++n) {
-      same_vibration(plain[n], copy(recording[n], static_cast<double>(n)));
     }
   });
 
@@ -1069,25 +1006,4 @@ TEMPLATE_TEST_CASE("taxel features: after large readings, ones that stay the sam
       CHECK((seen.status == TaxelStatus::quiet || sample < 19));
     }
   }
-}
-
-TEST_CASE("taxel features: a sample allocates nothing", "[taxel_features]") {
-  const long before = test::allocations();
-  TaxelFeatures<> finger(16, 4);
-  CHECK(test::allocations() > before);  // all memory is allocated here
-  test::Image<double> taxels(16, 4, 100);
-  const test::Image<double> other(4, 16, 100);
-  Index vibrating = 0;
-  const long at_start = test::allocations();
-  for (int k = 0; k < 100; ++k) {
-    taxels(3, 2) = k % 4 < 2 ? 200 : 100;
-    taxels(5, 1) = k == 50 ? test::nan : 100;
-    const double time_s = k / 30.0 + (k > 70 ? 10 : 0);  // one jump
-    vibrating += finger(taxels, time_s).is_vibrating() ? 1 : 0;
-    finger(other, time_s);
-    finger(taxels, test::nan);
-  }
-  finger.reset();
-  CHECK(test::allocations() == at_start);
-  CHECK(vibrating == 71 - 15 + 29 - 15);
 }

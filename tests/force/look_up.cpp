@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "fingerpad/adapt/dual.hpp"
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/curves.hpp"
 #include "support/generators.hpp"
@@ -72,17 +71,6 @@ ShearMap<> ends() {
 
 // ---- normal force, by hand
 
-TEST_CASE("normal force: names of statuses", "[normal_force]") {
-  CHECK(std::string(name_of(ForceStatus::no_contact)) == "no contact");
-  CHECK(std::string(name_of(ForceStatus::measured)) == "measured");
-  CHECK(std::string(name_of(ForceStatus::below_range)) == "below range");
-  CHECK(std::string(name_of(ForceStatus::beyond_range)) == "beyond range");
-  CHECK(std::string(name_of(ForceStatus::held_at_zero)) == "held at zero");
-  CHECK(std::string(name_of(ForceStatus::disagreeing)) == "disagreeing");
-  CHECK(begins_with(name_of(ForceStatus::implausible), "implausible"));
-  CHECK(std::string(name_of(ForceStatus::not_finite)) == "not finite");
-}
-
 TEST_CASE("normal force: the published curves", "[normal_force]") {
   CHECK(by_area(100).force_n == printed(3.3342));
   CHECK(by_area(478).force_n == printed(28.03272));
@@ -107,18 +95,6 @@ TEST_CASE("normal force: every degree", "[normal_force]") {
   CHECK(level.lowest_slope(0.5) == 0);
   CHECK(level.lowest_slope(2) == 3);
   CHECK(line().lowest_slope(0) == 2);
-}
-
-TEST_CASE("normal force: no contact, no force", "[normal_force]") {
-  for (const double none : {0.0, -0.0, -1e-300, -3.0, -1e300}) {
-    CAPTURE(none);
-    for (const auto& r : {by_area(none), by_depth(none)}) {
-      CHECK(r.status == ForceStatus::no_contact);
-      CHECK(r.has_force());
-      CHECK(r.force_n == 0);
-      CHECK_FALSE(std::signbit(r.force_n));
-    }
-  }
 }
 
 TEST_CASE("normal force: below the range it fades out", "[normal_force]") {
@@ -314,22 +290,6 @@ TEST_CASE("normal force: two measures fused", "[normal_force]") {
   CHECK(fused(R{ForceStatus::no_contact, 0, 1}, at(2, 1)).force_n == 1);
 }
 
-TEST_CASE("normal force: forces by area and by depth that agree, fused", "[normal_force]") {
-  ForceCurve<> of_area = test::curve_of_area(), of_depth = test::curve_of_depth();
-  of_area.covariance[0][0] = of_depth.covariance[0][0] = 0.01;
-  of_area.residual_sd_n = 0.5;
-  of_depth.residual_sd_n = 0.27;
-  const NormalForce area(of_area), depth(of_depth);
-  const auto a = area(225, 25), d = depth(3, 0.0004);  // 9.0 and 9.0 N
-  const auto both = fused(a, d);
-  CHECK(both.force_n > (std::min)(a.force_n, d.force_n));
-  CHECK(both.force_n < (std::max)(a.force_n, d.force_n));
-  CHECK(both.variance_n2 < (std::min)(a.variance_n2, d.variance_n2));
-  CHECK(std::abs(both.disagreement) < 1);
-  // a sharper object: as deep, but half the area
-  CHECK(std::abs(fused(area(110, 25), depth(3, 0.0004)).disagreement) > 3);
-}
-
 // ---- normal force, laws for every curve
 
 namespace {
@@ -512,49 +472,9 @@ struct Spread {
     }
     return curve;
   }
-  ForceCurve<> moved(ForceCurve<> curve, test::Random& random) const {
-    const std::array<double, 3> normal = {random.normal(), random.normal(), random.normal()};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        curve.coefficients[i] += factor[i][k] * normal[k];
-      }
-    }
-    return curve;
-  }
 };
 
 }  // namespace
-
-TEST_CASE("normal force: the variance is that of parameters and measures drawn at random",
-          "[normal_force][law]") {
-  // A variance from n draws has a relative standard deviation of sqrt(2 / n); the margin is four of
-  // it. Terms of higher order are below 0.1 %, because the errors of the parameters are small.
-  constexpr int draws = 4000;
-  const double margin = 4 * std::sqrt(2.0 / draws);
-  Spread spread;
-  spread.factor = {{{0.02, 0, 0}, {-1e-4, 2e-4, 0}, {1e-7, -3e-7, 2e-7}}};
-  for (const double measure : {9.0, 40.0, 450.0}) {
-    for (const double noise : {0.0, 1.0}) {
-      CAPTURE(measure, noise);
-      const ForceCurve<> plain = test::curve_of_area();
-      auto curve = spread.with_covariance(plain);
-      curve.residual_sd_n = 0.02 * noise;
-      const double measure_sd = 0.3 * noise;
-      const auto said = NormalForce(curve)(measure, square(measure_sd));
-      test::Random random(static_cast<std::uint64_t>(1000 * measure));
-      double sum = 0, sum_sq = 0;
-      for (int k = 0; k < draws; ++k) {
-        const NormalForce other(spread.moved(plain, random));
-        const double at = measure + measure_sd * random.normal();
-        const double off = other(at).force_n + curve.residual_sd_n * random.normal() - said.force_n;
-        sum += off;
-        sum_sq += off * off;
-      }
-      const double mean = sum / draws;
-      CHECK(said.variance_n2 / (sum_sq / draws - mean * mean) == Approx(1).epsilon(margin));
-    }
-  }
-}
 
 TEST_CASE("normal force: a variance is never negative, and more noise is no less",
           "[normal_force][law]") {
@@ -625,29 +545,6 @@ TEST_CASE("normal force: two forces fused lie between them", "[normal_force][law
   });
 }
 
-TEST_CASE("normal force: fused forces err as they say", "[normal_force][law]") {
-  // Errors of both forces are random: checks the variance of the fused force and the unit variance
-  // of the disagreement, to four standard deviations of the samples.
-  constexpr int draws = 8000;
-  const double margin = 4 * std::sqrt(2.0 / draws);
-  for (const double variance_b : {0.01, 0.25, 4.0}) {
-    test::Random random(static_cast<std::uint64_t>(100 * variance_b));
-    double sum_sq = 0, disagreement_sq = 0, said = 0;
-    for (int k = 0; k < draws; ++k) {
-      const ForceResult<double> a{ForceStatus::measured, 10 + 0.5 * random.normal(), 0.25};
-      const ForceResult<double> b{ForceStatus::measured,
-                                  10 + std::sqrt(variance_b) * random.normal(), variance_b};
-      const auto f = fused(a, b);
-      sum_sq += (f.force_n - 10) * (f.force_n - 10);
-      disagreement_sq += f.disagreement * f.disagreement;
-      said = f.variance_n2;
-    }
-    CAPTURE(variance_b);
-    CHECK(sum_sq / draws / said == Approx(1).epsilon(margin));
-    CHECK(disagreement_sq / draws == Approx(1).epsilon(margin));
-  }
-}
-
 // ---- shear, by hand
 
 TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
@@ -688,17 +585,6 @@ TEST_CASE("shear: normalised as published (eqs. 4 and 5)", "[shear]") {
   check_factors(ones(5, 1, 3), {{5, 1, 1}, {10, 2, 8}, {2.5, 0.5, 0.125}, {15, 3, 27}});
 }
 
-TEST_CASE("shear: without exponents the size does not matter", "[shear]") {
-  const Shear shear(ones());
-  for (const double any : {1e-300, 0.01, 1.0, 17.0, 1e300}) {
-    const auto r = shear(any, {0.7, -0.2}, 0.1);
-    CHECK(r.tangential_force_n.x == 0.7);
-    CHECK(r.tangential_force_n.y == -0.2);
-    CHECK(r.moment_n_mm == 0.1);
-  }
-  CHECK(shear(0.0, {0.7, -0.2}, 0.1).tangential_force_n.x == 0);
-}
-
 TEST_CASE("shear: a straight line needs no range, but reports the one it has", "[shear]") {
   ShearMap<> map = test::straight_map<double>(1, 0, 0, 2, 3);
   const Shear open(map);
@@ -719,22 +605,6 @@ TEST_CASE("shear: a straight line needs no range, but reports the one it has", "
     CHECK(d.status == (turned ? wild : size > 0.5 ? beyond : ForceStatus::measured));
     CHECK(c.moment_n_mm == 3 * size);
     CHECK(d.moment_n_mm == 3 * size);
-  }
-}
-
-TEST_CASE("shear: without contact there is no force, whatever is displaced", "[shear]") {
-  ShearMap<> map = ends();
-  map.reference = 100, map.force.exponent = 0.65, map.moment.exponent = 1.7;
-  for (const double measure : {0.0, -0.0, -1e-300, -7.0, -1e300}) {
-    for (const double size : {0.0, 0.1, 1.0, 1e6}) {
-      const auto r = Shear(map)(measure, {size, -size}, size);
-      CHECK(r.status == ForceStatus::no_contact);
-      CHECK(r.has_force());
-      CHECK(r.has_moment());
-      CHECK(r.tangential_force_n.x == 0);
-      CHECK(r.tangential_force_n.y == 0);
-      CHECK(r.moment_n_mm == 0);
-    }
   }
 }
 
@@ -795,15 +665,6 @@ TEST_CASE("shear: bad parameters are refused by name", "[shear]") {
     CHECK(with(ends(), [&](auto& m) { (m.*law).to = missing; }) == "accepted");
     CHECK(with(ends(), [&](auto& m) { (m.*law).slope = 0; }) == "accepted");  // of the other alone
   }
-}
-
-TEST_CASE("look-ups are values of some numbers", "[normal_force][shear]") {
-  static_assert(std::is_trivially_copyable_v<NormalForce<float>>);
-  static_assert(std::is_trivially_copyable_v<Shear<double>>);
-  const Shear shear(test::straight_map(100.0F, 0.65F, 1.7F, 2.0F, 3.0F));
-  const auto r = shear(200.0F, {1.0F, 0.0F}, 1.0F);
-  CHECK(r.tangential_force_n.x == Approx(2 * 1.56916819579350147).epsilon(1e-6));
-  CHECK(r.moment_n_mm == Approx(3 * 3.24900958542494209).epsilon(1e-6));
 }
 
 // ---- shear, laws for every pad, contact and shift
@@ -1194,26 +1055,6 @@ TEMPLATE_TEST_CASE("derivatives of look-ups are those of differences",
   }
 }
 
-TEST_CASE("derivatives of shear by many seeds at once, by hand", "[shear]") {
-  using Ad = fingerpad::Dual<4>;
-  const auto seed = [](double number, std::size_t k) { return Ad::parameter(number, k); };
-  ShearMap<Ad> map;
-  map.reference = Ad(100);
-  map.force = {seed(2, 2), seed(0.65, 0), Ad(5)};
-  map.moment = {seed(30, 3), seed(1.7, 1), Ad(1)};
-  const auto r = Shear(map)(Ad(200), {Ad(0.3), Ad(-0.4)}, Ad(0.1));
-  const double u = 0.5 * std::pow(2.0, 0.65), turn = std::pow(2.0, 1.7) * 0.1;
-  const auto fx = r.tangential_force_n.x.slopes, fy = r.tangential_force_n.y.slopes;
-  CHECK(fx[2] == Approx(0.6 * u).epsilon(1e-13));
-  CHECK(fy[2] == Approx(-0.8 * u).epsilon(1e-13));
-  CHECK(fx[0] == Approx(0.6 * 2 * u * std::log(2.0)).epsilon(1e-13));
-  CHECK(fx[1] == 0);
-  const auto m = r.moment_n_mm.slopes;
-  CHECK(m[3] == Approx(turn).epsilon(1e-13));
-  CHECK(m[1] == Approx(30 * turn * std::log(2.0)).epsilon(1e-13));
-  CHECK(m[0] == 0);
-}
-
 TEMPLATE_TEST_CASE("a curve that is flat where it begins", "[normal_force]", float, double) {
   // (m - 8)^2 from its vertex on: the terms are 128 times their sum
   const auto force = []<class S>(S) {
@@ -1268,31 +1109,4 @@ TEMPLATE_TEST_CASE("the largest and the smallest contacts", "[normal_force]", fl
   CHECK(steep(S(max / 16)).force_n == S(max / 2));
   CHECK(std::isnan(steep(max).force_n));
   CHECK(steep(max).status == ForceStatus::not_finite);
-}
-
-TEMPLATE_TEST_CASE(
-    "look-ups: a frame allocates nothing", "[normal_force][shear]", float, double, long double) {
-  using S = TestType;
-  const S measures[] = {S(-1),  S(0),   S(5),
-                        S(100), S(470), S(1000),
-                        S(1e6), S(0.1), std::numeric_limits<S>::quiet_NaN()};
-  ForceCurve<S> curve = test::curve_of_area<S>();
-  curve.residual_sd_n = S(1);
-  const long before = test::allocations();
-  CHECK(before > 0);
-  const NormalForce force(curve);
-  const Shear shear(test::straight_map(S(100), S(0.65), S(1.7), S(2), S(60)));
-  const long start = test::allocations();
-  int answers = 0;
-  for (int i = 0; i < 200; ++i) {
-    const S measure = measures[i % 9], y = i % 31 == 0 ? std::numeric_limits<S>::quiet_NaN() : S(1);
-    const S angle = S(0.001) * static_cast<S>(i % 29);
-    const auto r = force(measure, angle);
-    answers += r.has_force() ? 1 : 0;
-    answers += fused(r, force(S(100))).has_force() ? 1 : 0;
-    answers += shear(measure, {S(0.1), y}, angle).has_moment() ? 1 : 0;
-  }
-  const long after = test::allocations();
-  CHECK(after == start);
-  CHECK(answers > 500);
 }

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/rim_marks.hpp"
@@ -392,22 +391,4 @@ TEST_CASE("wrench: bad parameters are refused by name", "[wrench]") {
   CHECK(said({.thickness_mm = -1}) == "WrenchOptions: thickness_mm = -1, must be finite and >= 0");
   CHECK(said({.full_scale_n = -1}) == "WrenchOptions: full_scale_n = -1, must be finite and >= 0");
   CHECK(said({.cap = {.height_mm = 0}}) == "StressFreeCap: height_mm = 0, must be finite and > 0");
-}
-
-TEST_CASE("wrench: a frame of a copy allocates nothing", "[wrench]") {
-  const test::RimScene& s = test::rim_scenes().front();
-  test::SeenRim rim(s, test::SeenRim::options_of(s, true), 0.06, 1);
-  auto copy = rim.wrench;
-  int good = 0;
-  long taken = 0;
-  for (std::size_t k = 1; k < s.frames.size(); ++k) {
-    rim.show(k);
-    const double pressure = k == 2 ? -1 : s.frames[k].pressure_mpa;
-    const long before = test::allocations();
-    good += copy(rim.marks, pressure).ok() ? 1 : 0;
-    taken += test::allocations() - before;
-  }
-  CHECK(test::allocations() > 0);
-  CHECK(taken == 0);
-  CHECK(good == 2);
 }

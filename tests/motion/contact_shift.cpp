@@ -13,7 +13,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -101,22 +100,6 @@ ShiftResult<S> shift(const Free& free, const Grid& dots, const Flags& contact) {
   return estimator(dots, contact);
 }
 
-/// The dots that take part: those whose position matters.
-template <class Dots, class Flags>
-Mask taking_part(const Points& dots, const Flags& contact) {
-  ContactShift<> estimator(dots, shift_by<Dots>());
-  Mask part(dots.rows(), dots.cols(), 0);
-  for (Index i = 0; i < dots.rows(); ++i) {
-    for (Index j = 0; j < dots.cols(); ++j) {
-      Points pushed = dots;
-      pushed(i, j).x += 1;
-      const auto r = estimator(pushed, contact);
-      part(i, j) = r.has_displacement() && r.displacement.x > 0.005 ? 1 : 0;
-    }
-  }
-  return part;
-}
-
 bool has_no_answer(const ShiftResult<double>& r) {
   return !r.has_displacement() && std::isnan(r.displacement.x) && std::isnan(r.displacement.y) &&
          std::isnan(r.rotation_rad) && std::isnan(r.residual_rms) && r.dots == 0;
@@ -129,45 +112,6 @@ struct Way {
 };
 
 }  // namespace
-
-TEMPLATE_TEST_CASE("contact shift: rigid motions are found to rounding",
-                   "[contact_shift]",
-                   (Way<EdgeDots, PlainMean>),
-                   (Way<EdgeDots, HuberMean>),
-                   (Way<ContactDots, PlainMean>),
-                   (Way<ContactDots, HuberMean>)) {
-  using Dots = typename TestType::Dots;
-  using Mean = typename TestType::Mean;
-  const Points free = printed();
-  const Mask contact = disc();
-  for (const Rigid& motion : {Rigid{}, Rigid{0, 2, -1}, Rigid{0.1, 0, 0}, Rigid{-0.3, 0.5, 0.25},
-                              Rigid{1e-8, 0, 0}, Rigid{2.5, -3, 4}, Rigid{-pi / 2, 0, 0}}) {
-    CAPTURE(motion.angle_rad, motion.x);
-    const Points dots = moved(free, motion);
-    const auto r = shift<Dots, Mean>(free, dots, contact);
-    REQUIRE(r.status == ShiftStatus::measured);
-    CHECK(r.has_displacement());
-    CHECK(r.dots == (std::is_same_v<Dots, EdgeDots> ? 88 : in_disc));
-    CHECK(r.rotation_rad == Approx(motion.angle_rad).epsilon(1e-14).margin(1e-15));
-    CHECK(r.residual_rms < 1e-14);
-    if (motion.angle_rad == 0) {
-      CHECK(r.displacement.x == Approx(motion.x).margin(1e-14));
-      CHECK(r.displacement.y == Approx(motion.y).margin(1e-14));
-    }
-    const auto in_float = shift<Dots, Mean, float>(free, dots, contact);
-    REQUIRE(in_float.status == ShiftStatus::measured);
-    CHECK(static_cast<double>(in_float.rotation_rad) == Approx(motion.angle_rad).margin(1e-6));
-    // a robust mean of residuals that are only roundoff weighs the dots by roundoff. Its middle is
-    // therefore uncertain, and a rotation turns that into an uncertain displacement.
-    const double moved_by = Mean::is_robust ? 1.5 * std::abs(motion.angle_rad) : 0;
-    const auto close = [&](float a, double b) {
-      return std::abs(static_cast<double>(a) - b) < 1e-5 + moved_by;
-    };
-    CHECK(close(in_float.displacement.x, r.displacement.x));
-    CHECK(close(in_float.displacement.y, r.displacement.y));
-    CHECK(in_float.residual_rms < 1e-5F);
-  }
-}
 
 TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
                    "[contact_shift]",
@@ -189,135 +133,6 @@ TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
   }
   const auto r = shift<TestType>(free, moved(free, {pi, 0, 0}), disc());
   CHECK(std::abs(r.rotation_rad) == Approx(pi));
-}
-
-TEST_CASE("contact shift: the rigid motion nearest to the dots", "[contact_shift]") {
-  // Four dots at the ends of a cross. Two move by 1 and two rest: the middle moves by half, and
-  // nothing rotates.
-  Points free(3, 3, {test::nan, test::nan});
-  free(0, 1) = {0, -2};
-  free(1, 0) = {-2, 0};
-  free(1, 2) = {2, 0};
-  free(2, 1) = {0, 2};
-  const Mask all(3, 3, 1);
-  Points dots = free;
-  dots(1, 0).x += 1;
-  dots(1, 2).x += 1;
-  auto r = shift<ContactDots>(free, dots, all);
-  CHECK(r.dots == 4);
-  CHECK(r.displacement.x == 0.5);
-  CHECK(r.displacement.y == 0);
-  CHECK(r.rotation_rad == 0);
-  CHECK(r.residual_rms == 0.5);
-  // a shear by 1 along x over 4: cross products 2 * 2 * 0.5, dot products 4 * 4
-  dots = free;
-  dots(0, 1).x += 1;
-  dots(2, 1).x -= 1;
-  r = shift<ContactDots>(free, dots, all);
-  CHECK(r.rotation_rad == Approx(std::atan2(4, 16)).epsilon(1e-15));
-  CHECK(r.displacement.x == 0);
-  // uniform growth: no rotation, and the residual is the growth
-  for (auto& p : dots.cells) {
-    p = {1.25 * p.x, 1.25 * p.y};
-  }
-  dots(0, 1) = {0, -2.5};
-  dots(2, 1) = {0, 2.5};
-  r = shift<ContactDots>(free, dots, all);
-  CHECK(r.rotation_rad == 0);
-  CHECK(r.residual_rms == 0.5);
-}
-
-TEST_CASE("contact shift: the dots on both sides of the edge", "[contact_shift]") {
-  const Points free = printed(7, 8, 0);
-  // # in contact, . not in contact, o and + those of either that take part
-  const auto mask_of = [](const std::array<const char*, 7>& picture, const char* marks) {
-    Mask mask(7, 8, 0);
-    for (Index i = 0; i < 7; ++i) {
-      for (Index j = 0; j < 8; ++j) {
-        const char c = picture[static_cast<std::size_t>(i)][j];
-        mask(i, j) = std::string(marks).find(c) != std::string::npos ? 1 : 0;
-      }
-    }
-    return mask;
-  };
-  const auto check = [&](const std::array<const char*, 7>& picture) {
-    const Mask contact = mask_of(picture, "#o");
-    CHECK(taking_part<EdgeDots>(free, contact).cells == mask_of(picture, "o+").cells);
-    CHECK(taking_part<ContactDots>(free, contact).cells == contact.cells);
-    const auto count = [](const Mask& m) {
-      return static_cast<Index>(std::count(m.cells.begin(), m.cells.end(), 1));
-    };
-    CHECK(shift<EdgeDots>(free, free, contact).dots == count(mask_of(picture, "o+")));
-    CHECK(shift<ContactDots>(free, free, contact).dots == count(contact));
-  };
-  check({"........",  //
-         "..++++++",  //
-         ".++oooo+",  //
-         ".+oo##o+",  //
-         ".+o##oo+",  //
-         ".+oooo++",  //
-         ".++++++."});
-  check({"#o+.....",  // at the border of the grid there is no other side
-         "oo+.....",  //
-         "+++..+++",  //
-         ".....+o+",  //
-         ".....+++",  //
-         "++......",  //
-         "o+......"});
-  check({"########",  //
-         "##ooo###",  //
-         "##o+o###",  //
-         "##ooo###",  //
-         "########",  //
-         "######oo",  //
-         "######o+"});
-  // no edge at all
-  const auto full = shift<EdgeDots>(free, free, Mask(7, 8, 1));
-  CHECK(full.status == ShiftStatus::no_dots);
-  CHECK(has_no_answer(full));
-  CHECK(has_no_answer(shift<EdgeDots>(free, free, Mask(7, 8, 0))));
-}
-
-TEST_CASE("contact shift: what is not known makes no edge", "[contact_shift]") {
-  const Points free = printed(7, 7, 0);
-  Image<Touch> contact(7, 7, Touch::none);
-  for (Index i = 0; i < 7; ++i) {
-    for (Index j = 0; j < 3; ++j) {
-      contact(i, j) = Touch::contact;
-    }
-  }
-  const auto columns = [&](const Points& dots, const Image<Touch>& mask) {
-    const Mask part = taking_part<EdgeDots>(dots, mask);
-    std::string text;
-    for (Index j = 0; j < 7; ++j) {
-      text += part(3, j) != 0 ? 'x' : '-';
-    }
-    return text;
-  };
-  CHECK(columns(free, contact) == "--xx---");
-  SECTION("a ring of unknown dots between contact and not") {
-    for (Index i = 0; i < 7; ++i) {
-      contact(i, 3) = Touch::unknown;
-    }
-    CHECK(columns(free, contact) == "-------");
-    CHECK(shift<EdgeDots>(free, free, contact).status == ShiftStatus::no_dots);
-    CHECK(taking_part<ContactDots>(free, contact)(3, 2) == 1);
-    CHECK(taking_part<ContactDots>(free, contact)(3, 3) == 0);
-  }
-  SECTION("a ring of lost dots") {
-    Points dots = free;
-    for (Index i = 0; i < 7; ++i) {
-      dots(i, 3).x = test::nan;
-    }
-    CHECK(columns(dots, contact) == "-------");
-  }
-  SECTION("one of them, whose neighbours have others") {
-    Points dots = free;
-    dots(3, 3) = {0, infinity};
-    CHECK(columns(dots, contact) == "--x----");
-    contact(3, 3) = Touch::unknown;
-    CHECK(columns(free, contact) == "--x----");
-  }
 }
 
 TEST_CASE("contact shift: of dots in space only the plane counts, in float or double",
@@ -605,15 +420,6 @@ TEST_CASE("contact shift: bad parameters are refused by name", "[contact_shift]"
   CHECK(test::begins_with(huber(test::nan, 10), "ContactShift: threshold = "));
   CHECK(huber(1.5, -1) == "ContactShift: robust_passes = -1, must be in [0, 100]");
   CHECK(huber(1.5, 101) == "ContactShift: robust_passes = 101, must be in [0, 100]");
-}
-
-TEST_CASE("contact shift: names", "[contact_shift]") {
-  CHECK(std::string(name_of(ShiftStatus::measured)) == "measured");
-  CHECK(std::string(name_of(ShiftStatus::one_place_only)) == "one place only");
-  CHECK(std::string(name_of(ShiftStatus::no_dots)) == "no dots");
-  CHECK(std::string(name_of(ShiftStatus::refused)) == "refused");
-  CHECK(has_no_answer(ShiftResult<double>()));
-  static_assert(std::is_same_v<decltype(ContactShift(Points())), ContactShift<double>>);
 }
 
 namespace {
@@ -1072,43 +878,4 @@ TEMPLATE_TEST_CASE("contact shift: whatever the dots, the answer says what it is
     check(shift_by<ContactDots, PlainMean>());
     check(shift_by<ContactDots, HuberMean>());
   });
-}
-
-namespace {
-
-test::Image<Point2<double>> dots(Index n, double shift) {
-  test::Image<Point2<double>> dots(n, n);
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) {
-      dots(i, j) = {1.5 * static_cast<double>(j) + shift, (1.5 + shift) * static_cast<double>(i)};
-    }
-  }
-  return dots;
-}
-
-}  // namespace
-
-TEST_CASE("contact shift: a frame allocates nothing", "[contact_shift]") {
-  const bool edge = GENERATE(true, false);
-  const int passes = GENERATE(0, 10);
-  const long before = test::allocations();
-  ContactShift estimator(dots(21, 0), {.edge_dots = edge, .robust_passes = passes});
-  CHECK(test::allocations() > before);  // all memory is allocated here
-  auto copy = estimator;
-  test::Image<std::uint8_t> contact(21, 21, 0);
-  auto moved = dots(21, 0.1);
-  moved(3, 3).x = test::nan;
-  long taken = 0;
-  Index counted = 0;
-  for (Index frame = 0; frame < 21; ++frame) {
-    for (Index j = 0; j < 21; ++j) {  // from no contact to all
-      contact(frame, j) = 1;
-    }
-    const long start = test::allocations();
-    counted += estimator(moved, contact).dots;
-    counted += copy(moved, contact).dots;
-    taken += test::allocations() - start;
-  }
-  CHECK(counted > 500);
-  CHECK(taken == 0);
 }

@@ -11,7 +11,6 @@
 
 #include "fingerpad/dots/spatial_dots.hpp"
 #include "fingerpad/published/object_motion.hpp"
-#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -40,24 +39,6 @@ TEST_CASE("object motion: the angles are those of the published convention") {
   // A quarter turn about z carries x (columns) to y (rows).
   const auto quarter = rotation_of(Angles<double>{0, 0, std::numbers::pi / 2});
   CHECK(quarter(Vector{1, 0, 0}).y == Approx(1));
-}
-
-TEST_CASE("object motion: a rolled ball, without noise") {
-  const test::RollingBall ball;
-  test::Rolling roll(ball, -6, 1);
-  ObjectMotion<> motion(21, 21);
-  CHECK(motion(roll.dots, roll.contact).begun);
-  ObjectMotionResult<double> result;
-  for (int k = 1; k <= 60; ++k) {
-    roll.step(-6 + 0.2 * k, 1 + 0.1 * k);
-    result = motion(roll.dots, roll.contact);
-    REQUIRE(result.ok());
-    CHECK(!result.begun);
-  }
-  CHECK(result.residual_rms_mm < 1e-12);
-  const Vector center{-6, 1, ball.depth_mm + ball.radius_mm};
-  CHECK(error_deg(result.pose.rotation, roll.pose.rotation) < 1e-10);
-  CHECK(norm(result.pose(center) - center - Vector{12, 6, 0}) < 1e-11);
 }
 
 TEST_CASE("object motion: dots that come into contact again sit elsewhere on the object") {
@@ -103,21 +84,6 @@ TEST_CASE("object motion: noise after a roll of 30 mm", "[noise]") {
   CHECK(rms_deg(4, 60) < 2.5);  // too small and too fast for 1.5
   CHECK(rms_deg(5, 60) < 1.5);
   CHECK(rms_deg(6, 60) < 0.8);
-}
-
-TEST_CASE("object motion: composed rotations are exact where summed angles are not (E024)") {
-  const Flags contact(7, 7, 1);
-  for (const Vector& turn : {Vector{0, 0.002, 0}, {0.002, 0.002, 0}, {0.001, -0.002, 0.003}}) {
-    ObjectMotion<> motion(7, 7);
-    Pose<double> pose;
-    auto result = motion(small_grid(), contact);
-    for (int k = 0; k < 300; ++k) {
-      const Vector step = k < 150 ? turn : Vector{turn.y, turn.z, turn.x};
-      pose = Pose<double>{test::turned_by(step), {0, 0, 0}} * pose;
-      result = motion(rotated(small_grid(), pose), contact);
-    }
-    CHECK(error_deg(result.pose.rotation, pose.rotation) * degree < 1e-12);
-  }
 }
 
 TEST_CASE("object motion: statuses") {
@@ -275,14 +241,6 @@ TEST_CASE("object motion: a pose whose residual exceeds the noise is doubtful") 
     }
     CHECK((times > 2 ? doubtful > 35 : doubtful == 0));
   }
-}
-
-TEST_CASE("object motion: names of statuses") {
-  CHECK(std::string(name_of(MotionStatus::ok)) == "ok");
-  CHECK(std::string(name_of(MotionStatus::doubtful)) == "doubtful");
-  CHECK(std::string(name_of(MotionStatus::no_contact)) == "no contact");
-  CHECK(std::string(name_of(MotionStatus::no_pose)) == "no pose");
-  CHECK(std::string(name_of(MotionStatus::slipping)) == "slipping");
 }
 
 TEST_CASE("object motion: other sizes do nothing") {
@@ -734,49 +692,6 @@ TEST_CASE("nothing is worse than a status", "[object_motion][law]") {
       RC_ASSERT(!single.ok() || is_finite(single.position_mm.z));
     }
   });
-}
-
-TEST_CASE("object motion: a frame allocates nothing", "[object_motion]") {
-  const test::RollingBall ball;
-  const long before_all = test::allocations();
-  ObjectMotion<> motion(21, 21);
-  CHECK(test::allocations() > before_all);
-  published::ObjectMotion printed(ball.initial());
-  ObjectMotion<> copy = motion;
-  test::Rolling roll(ball, -6, 0);
-  test::Gauss gauss(1);
-  long taken = 0;
-  for (int k = 0; k < 30; ++k) {
-    roll.step(-6 + 0.4 * k, 0.1 * k);
-    auto dots = noisy(roll.dots, roll.contact, gauss);
-    dots(10, 10).x = not_a_number<double>();
-    auto flags = roll.contact;
-    if (k == 20) {
-      flags = test::Flags(21, 21, 0);  // start of a new object
-    }
-    const long before = test::allocations();
-    (void)motion(dots, flags);
-    (void)copy(dots, flags);
-    (void)printed(dots, flags);
-    copy = motion;
-    taken += test::allocations() - before;
-  }
-  CHECK(taken == 0);
-}
-
-TEST_CASE("spatial dots: a frame allocates nothing", "[object_motion]") {
-  const Camera<double> camera;
-  test::Dots out(5, 6);
-  test::Image<Point2<double>> dots(5, 6, {300, 200});
-  test::Image<float> depth(480, 640, 9.0F);
-  test::Flags mask(480, 640, 1), flags(5, 6, 0);
-  const long before = test::allocations();
-  const auto result = spatial_dots(camera, dots, depth, out);
-  const bool sampled = contact_at_dots(dots, mask, flags);
-  const long after = test::allocations();
-  CHECK(result == 30);
-  CHECK(sampled);
-  CHECK(after == before);
 }
 
 TEST_CASE("object motion: follows in 50 digits", "[object_motion]") {

@@ -113,17 +113,6 @@ TEST_CASE("the whole chain gives the same bits from run to run and from a copy",
   check_same(once, copied);
 }
 
-TEST_CASE("a copy returns to a frame", "[chain]") {
-  Fingertip tip(frames().options());
-  (void)touch_of(tip, frames()[0].view());
-  Fingertip then = tip;
-  const auto expected = touch_of(tip, frames()[1].view());
-  (void)touch_of(tip, frames()[2].view());
-  const auto found = touch_of(then, frames()[1].view());
-  CHECK(test::same_bits(found.stick.stick_ratio, expected.stick.stick_ratio));
-  CHECK(test::same_bits(found.motion.angles.z_rad, expected.motion.angles.z_rad));
-}
-
 namespace {
 
 FingertipOptions contact_and_depth(int step) {
@@ -210,22 +199,6 @@ TEST_CASE("frames of 16 bit", "[chain]") {
   CHECK(touch.contact.area_mm2 == expected.contact.area_mm2);
 }
 
-TEST_CASE("without look-up no curve is needed, and the rest is the same", "[chain]") {
-  const Run whole(frames().options(), 2);
-  auto options = frames().options();
-  options.force_of_area = options.force_of_depth = {};
-  options.shear = {};
-  Fingertip tip(options);
-  for (std::size_t k = 0; k < whole.results.size(); ++k) {
-    const FingertipResult touch = touch_of(tip, frames()[k].view());
-    const FingertipResult& expected = whole.results[k];
-    CHECK(test::same_bits(touch.stick.stick_ratio, expected.stick.stick_ratio));
-    CHECK(test::same_bits(touch.slip.stick_ratio, expected.slip.stick_ratio));
-    CHECK_FALSE(touch.normal.has_force());
-    CHECK(touch.status == expected.status);
-  }
-}
-
 TEST_CASE("without six axes friction is that of the look-up", "[chain]") {
   // The moment of a contact with uniform pressure acts at the mean distance from its middle: 2/3 of
   // the radius.
@@ -244,27 +217,6 @@ TEST_CASE("without six axes friction is that of the look-up", "[chain]") {
       CHECK(std::abs(touch.shear.moment_n_mm) > 0.1);
     }
   }
-}
-
-TEST_CASE("samples beside the pad are not taken", "[chain]") {
-  const fingerpad::detail::SampledPad<float> pad(frames().options().reference, 2);
-  Index beside = 0;
-  REQUIRE(static_cast<Index>(pad.spans.size()) == pad.samples.rows);
-  for (Index i = 0; i < pad.samples.rows; ++i) {
-    const auto& span = pad.spans[static_cast<std::size_t>(i)];
-    CHECK(span.row == i);
-    CHECK(span.rows == 1);
-    if (span.cols > 0) {
-      CHECK(pad.samples.in_pad(i, span.col));
-      CHECK(pad.samples.in_pad(i, span.col + span.cols - 1));
-    }
-    for (Index j = 0; j < pad.samples.cols; ++j) {
-      const bool within = span.col <= j && j < span.col + span.cols;
-      beside += within ? 0 : 1;
-      CHECK((within || !pad.samples.in_pad(i, j)));
-    }
-  }
-  CHECK(beside > 100);
 }
 
 TEST_CASE("sampled frames say what whole ones do", "[chain]") {

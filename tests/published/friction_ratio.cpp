@@ -49,19 +49,6 @@ TEST_CASE("friction ratio: forces that give no ratio", "[friction_ratio]") {
   CHECK(friction.mu_0() == 0.8);
 }
 
-TEST_CASE("friction ratio: any number type", "[friction_ratio]") {
-  using test::Digits50;
-  FrictionRatio<Digits50> digits;
-  (void)digits(Digits50(5), Digits50(10), true);
-  CHECK(static_cast<double>(digits(Digits50(1), Digits50(3), false)) ==
-        Approx(1.0 / 3).epsilon(1e-15));
-  // derivative of the margin by the grip: F / N^2 over the stored ratio
-  using D = test::Tangent<double>;
-  FrictionRatio<D> dual;
-  (void)dual(D(0.5), D(1), true);
-  CHECK(dual(D(1), D(4, 1), false).d == Approx(1.0 / 16 / 0.5));
-}
-
 TEST_CASE("friction ratio: laws", "[friction_ratio][law]") {
   rc::prop("gripping harder never lessens the margin, pulling harder never adds to it", [] {
     const double force = test::uniform(0, 5), normal = test::uniform(0.1, 20);

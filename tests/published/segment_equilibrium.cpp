@@ -313,11 +313,3 @@ TEST_CASE("published six-axis force: what it refuses", "[published]") {
   CHECK(test::begins_with(said({.step_mm = 0}), owner + "step_mm = 0"));
   CHECK(test::begins_with(said({.inside_mm = -1}), owner + "inside_mm = -1"));
 }
-
-TEST_CASE("published six-axis force: names of what can happen", "[published]") {
-  const std::array<const char*, 6> names = {"ok",        "no contact", "no shape",
-                                            "bad input", "not solved", "refused"};
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    CHECK(std::string(name_of(static_cast<SegmentStatus>(k))) == names[k]);
-  }
-}

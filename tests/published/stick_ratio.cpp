@@ -360,31 +360,6 @@ TEST_CASE("slides: a press has its scale where something moves", "[published]") 
   CHECK(std::abs(r.angle_rad) < 1e-12);
 }
 
-TEMPLATE_TEST_CASE("published stick ratio: any scalar", "[published]", float, long double) {
-  for (const test::SlipScene scene : test::all_slip_scenes) {
-    test::Random random(3);
-    SlippingDots truth;
-    Printed reference(21, 21);
-    published::StickRatio<TestType> ratio(21, 21);
-    Index near = 0, frames = 0;
-    for (const test::SlipStep& step : steps_of(scene, 0.7)) {
-      truth.step(step);
-      auto dots = noisy(truth.dots, 0.06, random);
-      for (auto& p : dots.cells) {
-        p = {static_cast<double>(static_cast<float>(p.x)),
-             static_cast<double>(static_cast<float>(p.y))};
-      }
-      const auto a = reference(dots, truth.contact);
-      const auto b = ratio(dots, truth.contact);
-      REQUIRE(a.updated == b.updated);
-      REQUIRE(a.reference_age == b.reference_age);
-      ++frames;
-      near += std::abs(a.stick_ratio - static_cast<double>(b.stick_ratio)) < 0.006 ? 1 : 0;
-    }
-    CHECK(near >= frames - 1);  // one dot of 213 at the threshold
-  }
-}
-
 TEST_CASE("published stick ratio: it does not depend on how the image is held",
           "[published][law]") {
   rc::prop("shifted, rotated, mirrored, enlarged with the thresholds", [] {

@@ -295,40 +295,6 @@ TEST_CASE("fingers are found where sensor.json says, each as if it were alone") 
         "finger1_taxels_left_out,finger1_taxel_status,preslip,preslip_rule");
 }
 
-TEST_CASE("one to five fingers that feel the same alarm as one does") {
-  // On all fingers or on any of them: the result is the same if all fingers are equal.
-  const int count = GENERATE(2, 3, 4, 5);
-  const auto one = run(taxels_of(rows, cols, samples, creeping));
-  std::string fingers;
-  for (int f = 0; f < count; ++f) {
-    fingers += (f > 0 ? "," : "") + ("{\"first_row\": " + std::to_string(f * rows)) +
-               R"(, "rows": 6, "first_col": 0, "cols": 4})";
-  }
-  const auto all = run(taxels_of(count * rows, cols, samples,
-                                 [](int k, int i, int j) { return creeping(k, i % rows, j); }),
-                       with_foam("\"fingers\": [" + fingers + "]"));
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    INFO("sample " << k);
-    CHECK(all[k].at("preslip") == one[k].at("preslip"));
-    CHECK(all[k].at("preslip_rule") == one[k].at("preslip_rule"));
-  }
-}
-
-TEST_CASE("an alarm ends when the vibration does") {
-  const auto signal = [](int k, int i, int j) {
-    return k < 112 ? creeping(k, i, j) : held(k, i, j);
-  };
-  const auto lines = run(taxels_of(rows, cols, samples, signal));
-  CHECK(first_alarm(lines) >= first_begins);
-  int quiet = 0;
-  for (const Line& line : lines) {
-    quiet += line.at("taxel_status") == "quiet" ? 1 : 0;
-    CHECK((line.at("taxel_status") != "quiet" || line.at("preslip") == "0"));
-  }
-  CHECK(quiet > first_begins);
-  CHECK(lines.back().at("taxel_status") == "quiet");
-}
-
 TEST_CASE("either rule may be left out") {
   // With equal waves at another place grasp-optimise alarms, too.
   const auto signal = [](int k, int i, int j) {
@@ -383,27 +349,6 @@ TEST_CASE("the order of the columns and the way of the file do not matter") {
   CHECK(work.table_text() == expected);
 }
 
-TEST_CASE("the unit of the readings does not matter") {
-  constexpr double unit = 1.0 / 64;  // nothing is rounded
-  const auto scaled = [&](int k, int i, int j) { return unit * creeping(k, i, j); };
-  const std::string of_counts = GENERATE(R"("pitch_mm": 2)", R"("noise": 4, "saturated_at": 370)");
-  const std::string of_scaled =
-      of_counts[1] == 'p'
-          ? of_counts
-          : "\"noise\": " + number(4 * unit) + ", \"saturated_at\": " + number(370 * unit);
-  const auto counts = run(taxels_of(rows, cols, samples, creeping), with_foam(of_counts));
-  const auto lines = run(taxels_of(rows, cols, samples, scaled), with_foam(of_scaled));
-  CHECK(first_alarm(counts) >= first_begins);
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    INFO("sample " << k);
-    Line line = lines[k];
-    CHECK(std::abs(std::stod(line["sum"]) - unit * std::stod(counts[k].at("sum"))) <
-          1e-6 * std::stod(line["sum"]));
-    line["sum"] = counts[k].at("sum");
-    CHECK(line == counts[k]);
-  }
-}
-
 TEST_CASE("what sensor.json leaves out is as documented") {
   const Taxels taxels = taxels_of(rows, cols, samples, creeping);
   const std::string expected = text_of(taxels);
@@ -425,24 +370,6 @@ TEST_CASE("each key of sensor.json reaches the features or the rules") {
                R"("history": 2)", R"("least_waves": 4)", R"("centroid_tolerance_mm": 3)");
   INFO(key);
   CHECK(text_of(taxels, with_foam(key)) != expected);
-}
-
-TEST_CASE("readings that saturate or are stuck are left out") {
-  Taxels taxels = taxels_of(rows, cols, samples, creeping);
-  for (int k = 20; k < samples; ++k) {
-    taxels.cell(k, "r2_c1") = "4000";
-  }
-  const auto saturated = run(taxels, with_foam(R"("saturated_at": 4000)"));
-  CHECK(saturated[19].at("taxels_left_out") == "0");
-  CHECK(saturated[20].at("taxels_left_out") == "1");
-  CHECK(first_alarm(saturated) >= first_begins);
-  const auto loosened = [](int k, int i, int j) {
-    return i == 2 && j == 1 ? 300 : held(k, i, j) * (1 - 0.004 * (std::max)(k - 40, 0));
-  };
-  const auto stuck =
-      run(taxels_of(rows, cols, samples, loosened), with_foam(R"("noise": 3, "stuck_after": 30)"));
-  CHECK(stuck[69].at("taxels_left_out") == "0");  // nothing has asked it to change for so long
-  CHECK(stuck[99].at("taxels_left_out") == "1");
 }
 
 TEST_CASE("counts become newtons by what is stated of the array or of each taxel") {

@@ -372,11 +372,6 @@ TEST_CASE("grip control: update of a stick ratio", "[grip_control]") {
   }
 }
 
-TEST_CASE("grip control: names", "[grip_control]") {
-  CHECK(std::string(name_of(GripReason::slipping)) == "slipping");
-  CHECK(std::string(name_of(GripReason::lost)) == "lost");
-}
-
 TEST_CASE("grip control: bad parameters are refused by name", "[grip_control]") {
   using Options = GripOptions<double>;
   check_refused(&Options::set_point, "set_point", {0, 1, -1, none, infinity});

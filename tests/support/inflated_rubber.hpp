@@ -74,19 +74,6 @@ struct InflatedRubber {
     return angle;
   }
 
-  /// Point of the meridian at `arc_mm` of stress-free arc from the rim.
-  static Place near_rim(const std::vector<Place>& places, double arc_mm) {
-    const double arc = places.back().arc - arc_mm;
-    std::size_t k = places.size() - 1;
-    while (places[k - 1].arc > arc) {
-      --k;
-    }
-    const Place &a = places[k - 1], &b = places[k];
-    const double t = (arc - a.arc) / (b.arc - a.arc);
-    return {arc,       a.r + t * (b.r - a.r), a.z + t * (b.z - a.z),
-            a.stretch, a.inclination,         a.stress_free_r};
-  }
-
  private:
   template <class F>
   static double slope(const F& f, double x) {

@@ -131,10 +131,6 @@ struct Pad {
         r.plate_rho_mm * r.plate_rho_mm + z0 * z0 - sphere_radius_mm * sphere_radius_mm;
     return (b + std::sqrt(b * b - a * c)) / a;
   }
-  /// The same under a flat plate `press_mm` below the top.
-  double pressed_depth(Index row, Index col, double press_mm) const {
-    return (std::min)(free_depth(row, col), height_mm - press_mm);
-  }
   /// Some printed dots: every seventh pixel and its neighbour are darker.
   double dotted_brightness(Index row, Index col) const {
     return brightness * ((row % 7 < 2 && col % 7 < 2) ? 0.4 : 1.0);

@@ -105,21 +105,6 @@ struct FilmSide {
   bool touches(double r) const { return r <= contact_mm; }
 };
 
-/// An inflated cap that touches a flat object in a marked disc only, without being flattened.
-/// Outside the contact f_v = p R / 2.
-struct CapSide {
-  double radius_mm = 18.735;
-  double sphere_mm = 20;
-  double contact_mm = 0;
-
-  double low_mm() const { return std::sqrt(sphere_mm * sphere_mm - radius_mm * radius_mm); }
-  double height(double r) const {
-    return r <= radius_mm + 1e-9 ? std::sqrt(sphere_mm * sphere_mm - r * r) - low_mm() : nan;
-  }
-  double slope(double r) const { return -r / std::sqrt(sphere_mm * sphere_mm - r * r); }
-  bool touches(double r) const { return contact_mm > 0 && r <= contact_mm; }
-};
-
 /// Tensions at the rim, N/mm: along the slope of the membrane and along the rim (counterclockwise).
 struct RimLoad {
   double normal = 0.2;
