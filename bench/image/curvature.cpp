@@ -86,19 +86,13 @@ struct Bench {
   }
 
   template <class S, class CameraType>
-  void add(const std::string& name, const CameraType& camera, bool clamped = true) const {
+  void add(const std::string& name, const CameraType& camera) const {
     using Map = CurvatureMap<S>;
     const auto from = std::make_shared<Image<S>>(as<S>(depth));
     const bench::Memory memory;
     const auto map = std::make_shared<Map>(camera, depth.rows(), depth.cols(), double(radius_px));
     const auto out = std::make_shared<Image<S>>(depth.rows(), depth.cols());
-    if (clamped) {
-      add_map(name, camera, clamped, out, memory.bytes(), [=] { (void)(*map)(*from, *out); });
-      return;
-    }
-    const auto plain = std::make_shared<Image<S>>(*out);
-    add_map(name, camera, clamped, plain, memory.bytes(),
-            [=] { (void)(*map)(*from, *out, *plain); });
+    add_map(name, camera, true, out, memory.bytes(), [=] { (void)(*map)(*from, *out); });
   }
 
   /// Eqs. 10 and 11 with nearest pixels and their true distances.
@@ -165,10 +159,8 @@ struct Bench {
     const auto plate = from_afar();
     const Camera<double>& camera = scene.pad.camera;
     add_published<double>("published circle, double");
-    add_published<float>("published circle, float");
     add_opencv();
     bench::add_streaming(group(), scene.pixels());
-    add<float>("clamped and plain mean, float", plate, false);
     add<double>("clamped mean, double", plate);
     add<float>("clamped mean, float", plate);
     add<double>("clamped mean, double, through a camera", camera);

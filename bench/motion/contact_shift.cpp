@@ -150,7 +150,6 @@ int main(int argc, char** argv) {
     add<double>(group + "/dots of the edge, the default", stuck, {});
     add<float>(group + "/dots of the edge, the default, float", stuck, {});
     add<double>(group + "/dots of the edge, robust", stuck, {.robust_passes = 10});
-    add<float>(group + "/dots of the edge, robust, float", stuck, {.robust_passes = 10});
     bench::add_streaming(group, all_dots);
     add_opencv(group + "/cv::estimateAffinePartial2D of the dots in contact", stuck);
   }

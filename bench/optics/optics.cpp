@@ -167,18 +167,14 @@ int main(int argc, char** argv) {
   behind_plate.plate_thickness_mm = 5;
   const OrthographicCamera<double> from_above;
   const Calls<double, Camera> thin("double", camera), thick("double, plate of 5 mm", behind_plate);
-  const Calls<float, Camera> single("float", camera),
-      single_thick("float, plate of 5 mm", behind_plate);
+  const Calls<float, Camera> single("float", camera);
   const Calls<double, OrthographicCamera> heights("OrthographicCamera, double", from_above);
-  const Calls<float, OrthographicCamera> single_heights("OrthographicCamera, float", from_above);
   thin.add_heights();
   single.add_heights();
   thick.add_heights();
-  single_thick.add_heights();
   thin.add_published();
-  single.add_published();
   const auto add_points = [](const auto&... calls) { (calls.add_points(), ...); };
-  add_points(thin, single, thick, single_thick, heights, single_heights);
+  add_points(thin, single, thick, heights);
   add_all_opencv();
   return bench::run(argc, argv);
 }
