@@ -377,7 +377,7 @@ class Judge {
     judge_motion(step, touch);
     if (truth.at("area") > 0 && std::isfinite(touch.slip.stick_ratio)) {
       add(step, "stick ratio", std::abs(touch.slip.stick_ratio - truth.at("stick")), 0.3,
-          touch.slip.ratio_sd, touch.slip.updated());
+          touch.slip.ratio_sd, touch.slip.updated() && !touch.slip.in_doubt);
     }
     const WrenchResult& w = touch.wrench;
     if (std::isfinite(w.force_n.x)) {

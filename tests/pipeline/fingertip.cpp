@@ -674,6 +674,23 @@ TEST_CASE("six axes from printed dots begin with a frame that touches nothing", 
   REQUIRE(unfelt.wrench.status == expected);
   CHECK(unfelt.contact.in_contact());
   CHECK(unfelt.contact_in_doubt);
+  // a ratio between all and nothing depends on which dots touch
+  fingerpad::SlipResult<double> slip;
+  for (const double step :
+       {1.0, 2.0}) {  // half a row stays behind; the dots near the rim do not move
+    const fingerpad::LazyView moved(in.dots_px.rows(), in.dots_px.cols(), [&](Index i, Index j) {
+      const auto& p = in.dots_px(i, j);
+      const bool inner = std::abs(i - 10) < 6 && std::abs(j - 10) < 6;
+      return fingerpad::Point2<double>{p.x + (inner ? 4 * (i < 8 && j < 10 ? 1 : step) : 0), p.y};
+    });
+    const auto touch = tip(in.red, in.green, moved, 0.016);
+    CHECK(touch.contact_in_doubt);
+    slip = touch.slip;
+    CAPTURE(step, slip.stick_ratio, name_of(slip.status), slip.ratio_sd);
+    CHECK(slip.in_doubt == (slip.stick_ratio < 1));
+  }
+  CHECK(slip.stick_ratio > 0.8);  // not in doubt by itself
+  CHECK(slip.stick_ratio < 1);
 }
 
 namespace {

@@ -40,6 +40,8 @@ TEST_CASE("frames.csv: the stick ratio is that of dots and friction together") {
   CHECK(written(row, "stick_ratio_sd") == "0.150000");
   CHECK(written(row, "stick_ratio_updated") == "1");
   CHECK(written(row, "slip_status") == "ok");
+  row.touch.slip.in_doubt = true;
+  CHECK(written(row, "slip_status") == "doubtful");
   row.touch.stick.far_apart = true;
   CHECK(written(row, "slip_status") == "framesfarapart");  // read without blanks
   row.touch.slip.update = RatioUpdate::missing;

@@ -451,6 +451,28 @@ TEST_CASE("friction limit: which dots hold", "[friction_limit]") {
   }
 }
 
+TEST_CASE("friction limit: a ratio in doubt", "[friction_limit]") {
+  FrictionLimit<double> limit;
+  const auto seen = [](double ratio, double sd, bool far_apart = false) {
+    return StickResult<double>{.status = StickStatus::updated,
+                               .stick = 100,
+                               .far_apart = far_apart,
+                               .stick_ratio = ratio,
+                               .ratio_sd = sd};
+  };
+  CHECK_FALSE(limit(pull(1.0), seen(0.5, 0.2)).in_doubt);
+  CHECK(limit(pull(1.0), seen(0.5, 0.2, true)).in_doubt);
+  CHECK(limit(pull(1.0), seen(0.5, 0.41)).in_doubt);  // two random ratios differ by 0.408
+  CHECK(limit({}, seen(0.5, 0.2)).in_doubt);          // no load tells a slide
+  CHECK_FALSE(limit({}, seen(0.9, 0.2)).in_doubt);
+  CHECK_FALSE(limit(pull(2.2), seen(0.1, 0.2)).in_doubt);  // the first slide
+  CHECK_FALSE(limit(pull(2.3), seen(0.1, 0.2)).in_doubt);
+  const auto against = limit(pull(2.3), seen(0.3, 0.2));
+  CHECK(against.status == FrictionLimitStatus::sliding);
+  CHECK(against.in_doubt);
+  CHECK(limit({}, StickResult<double>{.status = StickStatus::too_few_dots}).in_doubt);
+}
+
 TEST_CASE("friction limit: names, and parameters that are refused", "[friction_limit]") {
   CHECK(std::string(name_of(FrictionLimitStatus::held)) == "held");
   CHECK(std::string(name_of(FrictionLimitStatus::sliding)) == "sliding");

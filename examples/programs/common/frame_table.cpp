@@ -131,6 +131,7 @@ constexpr Column columns[] = {
        return Text(!r.has_dots               ? ""
                    : !r.touch.slip.updated() ? name_of(r.touch.stick.status)
                    : r.touch.stick.far_apart ? "frames far apart"
+                   : r.touch.slip.in_doubt   ? "doubtful"
                                              : "ok");
      }},
     {"dots_in_contact",

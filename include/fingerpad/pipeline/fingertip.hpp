@@ -284,6 +284,9 @@ class Fingertip {
         !touch.depth.ok() || touch.neighbour_light != FrameStatus::ok || touch.light_in_doubt();
     touch.contact_in_doubt =
         find_contact_ && (!touch.contact.ok() || doubts_contact(touch, pressure_mpa));
+    if (touch.contact_in_doubt && touch.slip.stick_ratio > 0 && touch.slip.stick_ratio < 1) {
+      touch.slip.in_doubt = true;  // it depends on which dots touch
+    }
     const bool sure = !touch.depth_in_doubt && !touch.contact_in_doubt;
     if (sure && find_contact_ && !touch.contact.in_contact()) {
       return FingertipStatus::no_contact;

@@ -164,6 +164,10 @@ struct [[nodiscard]] SlipResult {
   bool falls_back = false;
   /// The dots' ratio is of this frame, and not above a fifth by what the number of dots leaves
   /// open.
+  bool may_slide = false;
+  /// The ratio may be off by more than 0.3: its standard deviation is that of a guess, friction
+  /// says that the object slides and a fifth of the dots or more that they stick, the frames are
+  /// too far apart, or no load tells a slide in part, with a ratio below 0.8, from one as a whole.
   bool in_doubt = false;
   S normal_n = not_a_number<S>();  ///< F_n; NaN where L is unknown
   S friction = not_a_number<S>();  ///< L
@@ -180,7 +184,7 @@ struct [[nodiscard]] SlipResult {
   /// and the few dots that slip since have little weight in the fit of the motion.
   bool holds(DotState state) const {
     const bool carried = falls_back && update == RatioUpdate::fresh && S(1) < S(2) * stick_ratio;
-    return status != FrictionLimitStatus::sliding && !in_doubt &&
+    return status != FrictionLimitStatus::sliding && !may_slide &&
            (carried || state != DotState::slip);
   }
 };
@@ -283,8 +287,11 @@ class FrictionLimit {
     result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
     result.falls_back = falls_back;
-    result.in_doubt = !falls_back && update == RatioUpdate::fresh &&
-                      !(S(least_stick) < ratio - S(seen.least_sd()));
+    const bool fresh = !falls_back && update == RatioUpdate::fresh;
+    result.may_slide = fresh && !(S(least_stick) < ratio - S(seen.least_sd()));
+    result.in_doubt = seen.far_apart || !(square(result.ratio_sd) < S(guess_sq)) ||
+                      (slid && fresh && !(ratio < S(least_stick))) ||
+                      (result.status == FrictionLimitStatus::no_load && ratio < S(0.8));
     return result;
   }
 
@@ -306,6 +313,8 @@ class FrictionLimit {
  private:
   /// An object slides if less of it sticks.
   static constexpr double least_stick = 0.2;
+  /// Mean square difference of two ratios that have nothing to do with each other.
+  static constexpr double guess_sq = 1.0 / 6;
   /// Largest factor by which the limit rises in a frame. An object that exceeds the limit by this
   /// factor while more than half of it sticks makes the limit unknown again.
   static constexpr double max_rise = 1.15;
