@@ -83,7 +83,7 @@ int lead(Crew& crew, const Arguments& arguments) {
   const auto counts = replay_many::write_overview(recordings, arguments.out);
   std::printf("recordings   %d done, %d failed\nframes       %lld\n", counts.done, counts.failed,
               counts.frames);
-  for (const char* file : {"summary.csv", "all_frames.csv", "overview.html"}) {
+  for (const char* file : {"summary.csv", "all_frames.csv"}) {
     std::printf("%s %s\n", file == std::string("summary.csv") ? "tables      " : "            ",
                 (arguments.out / file).c_str());
   }
@@ -122,8 +122,7 @@ int main(int argc, char** argv) {
       "ranks\n"
       "under mpirun or srun. It can be killed at any moment; the same command continues.\n"
       "DIR receives complete results of each recording in recordings/NAME/, or the reason of a\n"
-      "failure in failed/NAME.txt, and for all together summary.csv, all_frames.csv and\n"
-      "overview.html.");
+      "failure in failed/NAME.txt, and for all together summary.csv and all_frames.csv.");
   Arguments arguments;
   app.add_option("RECORDINGS", arguments.recordings, "folder with the recordings")->required();
   app.add_option("--out", arguments.out, "output folder")->option_text("DIR")->required();

@@ -31,44 +31,6 @@ std::string quoted(const std::string& text) {
   return cell + "\"";
 }
 
-/// Escapes HTML text or an attribute value.
-std::string in_html(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
-/// Percent-encodes a URL path; keeps slashes.
-std::string in_address(const std::string& name) {
-  std::string safe;
-  for (const char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '_' || c == '.' || c == '/';
-    char code[4];
-    std::snprintf(code, sizeof code, "%%%02X",
-                  static_cast<unsigned>(static_cast<unsigned char>(c)));
-    safe += plain ? std::string(1, c) : code;
-  }
-  return safe;
-}
-
 /// Maximum or minimum of columns over the frames of a recording, NaN if unknown, and its doubts.
 struct Extremes {
   struct Column {
@@ -111,10 +73,7 @@ replay::Table frames_of(const Path& folder) {
 class Overview {
  public:
   Overview(const Recordings& recordings, const Path& out)
-      : recordings_(recordings),
-        frames_(out / "all_frames.csv"),
-        summary_(out / "summary.csv"),
-        page_(out / "overview.html") {
+      : recordings_(recordings), frames_(out / "all_frames.csv"), summary_(out / "summary.csv") {
     find_columns();
     frames_ << "recording";
     for (const std::string& column : columns_) {
@@ -134,10 +93,6 @@ class Overview {
     }
     frames_.publish();
     summary_.publish();
-    page_ << page_head();
-    page_ << tiles_;
-    page_ << "</main>\n</html>\n";
-    page_.publish();
     return counts_;
   }
 
@@ -179,7 +134,6 @@ class Overview {
       doubted += (doubted.empty() ? "" : "; ") + what + " in " + in_frames;
     }
     summary_ << ',' << quoted(doubted) << '\n';
-    add_tile(found.name, status, failure.value_or(""), frames, extremes);
   }
 
   long long add_frames(const std::string& name, Extremes& extremes) {
@@ -206,55 +160,9 @@ class Overview {
     return frames;
   }
 
-  void add_tile(const std::string& name,
-                const std::string& status,
-                const std::string& reason,
-                long long frames,
-                const Extremes& extremes) {
-    std::string tile = "<figure class=\"" + status + "\">";
-    std::error_code error;
-    if (status != "done") {
-      tile += "<p>" + in_html(status == "failed" ? reason : "not done yet") + "</p>";
-    } else if (std::filesystem::exists(recordings_.place_of(name) / "small.png", error)) {
-      const std::string folder = "recordings/" + in_address(name);
-      tile += "<a href=\"" + folder + "/pictures/\"><img loading=\"lazy\" alt=\"" + in_html(name) +
-              "\" src=\"" + folder + "/small.png\"></a>";
-    }
-    tile += "<figcaption><b>" + in_html(name) + "</b> ";
-    tile += status == "done" ? std::to_string(frames) + " frames" : status;
-    for (const auto& column : extremes.columns) {
-      if (std::isfinite(column.value)) {
-        tile += std::string("<br>") + column.title + " " + in_words(column.value);
-      }
-    }
-    tiles_ += tile + "</figcaption></figure>\n";
-  }
-
-  std::string page_head() const {
-    return "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n"
-           "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Recordings</title>\n"
-           "<style>\n"
-           "body { font: 14px/1.4 sans-serif; margin: 1.5em; color: #222; }\n"
-           "main { display: grid; gap: 1.2em;"
-           " grid-template-columns: repeat(auto-fill, minmax(260px, 1fr)); align-items: start; }\n"
-           "figure { margin: 0; border-top: 3px solid #2a7; padding-top: .4em;"
-           " overflow-wrap: anywhere; }\n"
-           "figure.failed { border-color: #c33; } figure.left { border-color: #bbb; }\n"
-           "img { max-width: 100%; max-height: 240px; }\n"
-           "figcaption { color: #555; font-size: 12px; } figcaption b { color: #222; }\n"
-           "</style>\n<h1>" +
-           std::to_string(recordings_.all().size()) + " recordings</h1>\n<p>" +
-           std::to_string(counts_.done) + " done with " + std::to_string(counts_.frames) +
-           " frames, " + std::to_string(counts_.failed) + " failed, " +
-           std::to_string(counts_.left) +
-           " to do. <a href=\"summary.csv\">summary.csv</a>, "
-           "<a href=\"all_frames.csv\">all_frames.csv</a></p>\n<main>\n";
-  }
-
   const Recordings& recordings_;
-  replay::WholeFile frames_, summary_, page_;
+  replay::WholeFile frames_, summary_;
   Words columns_;
-  std::string tiles_;
   Counts counts_;
 };
 

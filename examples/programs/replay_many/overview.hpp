@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Tables and a page over all recordings.
+// Tables over all recordings.
 #include "recordings.hpp"
 
 namespace replay_many {
@@ -12,8 +12,7 @@ struct Counts {
 };
 
 /// Writes DIR/all_frames.csv (all lines of all frames.csv, preceded by the recording's name, with
-/// the union of the columns), DIR/summary.csv (one line per recording) and DIR/overview.html (a
-/// small picture of each). Throws replay::Failure.
+/// the union of the columns) and DIR/summary.csv (one line per recording). Throws replay::Failure.
 Counts write_overview(const Recordings& recordings, const Path& out);
 
 }  // namespace replay_many

@@ -7,12 +7,9 @@
 #include <cstdio>
 #include <new>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <system_error>
 
 #include "common/failure.hpp"
-#include "common/images.hpp"
 #include "common/recording.hpp"
 #include "fingerpad/core/check.hpp"
 #include "recordings.hpp"
@@ -47,19 +44,6 @@ class Aside {
 
 struct Interrupted {};
 
-constexpr int small_width_px = 360;
-
-/// Writes small.png, a reduced overview picture, for the page of all recordings.
-void write_small_picture(const Path& folder) {
-  const cv::Mat picture = cv::imread((folder / "pictures" / "montage.png").string());
-  if (!picture.empty()) {
-    const double scale = small_width_px / static_cast<double>(picture.cols);
-    cv::Mat small;
-    cv::resize(picture, small, cv::Size(), scale, scale, cv::INTER_AREA);
-    replay::write_png(folder / "small.png", small);
-  }
-}
-
 /// The first frame to compute for files from frame `first` on. Dots are tracked from frame to
 /// frame, so with dots all earlier frames are computed, too; without dots none.
 int warm_up(const Path& folder, int first) {
@@ -90,9 +74,6 @@ void do_recording(const std::vector<std::string>& arguments) {
   options.out = aside.growing();
   if (replay::run(options) != 0) {
     throw Interrupted();
-  }
-  if (!is_part || last == first) {
-    write_small_picture(options.out);
   }
   replay::publish_folder(options.out, place);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Splits a folder of recordings into units of work. The output consists of:
-//   DIR/recordings/NAME/  the output of replay, and small.png; a recording is done if this exists
+//   DIR/recordings/NAME/  the output of replay; a recording is done if this exists
 //   DIR/failed/NAME.txt   the reason of a failure
 //   DIR/parts/NAME/PART/  parts of a long recording, until all parts exist
 //   DIR/aside/            temporary files
