@@ -518,7 +518,7 @@ TEST_CASE("dots: options that cannot be are refused with their name") {
   refused("pattern.rows", [](auto& o) { o.pattern.rows = 5; });
   refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = 0.5; });
   refused("pattern.radius_px", [](auto& o) { o.pattern.radius_px = std::nan(""); });
-  refused("pattern.pitch_px", [](auto& o) { o.pattern.pitch_px = 20; });
+  refused("pattern.pitch_px", [](auto& o) { o.pattern.pitch_px = -1; });
   refused("pattern.pitch_px", [](auto& o) {
     o.pattern.radius_px = 5;
     o.pattern.pitch_px = 1e30;

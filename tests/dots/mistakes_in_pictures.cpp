@@ -97,7 +97,7 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes][figures]") {
       {"padded rows now", [](Pictures& p) { p.now = with_padding(p.now); }, "lost"},
       {"padded rows in both",
        [](Pictures& p) { p.now = with_padding(p.now), p.free = with_padding(p.free); },
-       "32 beside them"},
+       "6 beside them"},
       {"negative now", [](Pictures& p) { p.now = 255 - p.now; }, "lost"},
       {"constant now", [](Pictures& p) { p.now.setTo(100); }, "lost"},
       {"black now", [](Pictures& p) { p.now.setTo(0); }, "lost"},
@@ -169,14 +169,15 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes][figures]") {
          p.options.pattern.radius_px = 10;
          p.options.pattern.pitch_px = 24;
        },
-       "right"},
+       "no grid of 9 or more dots"},
       {"pitch twice",
        [](Pictures& p) {
          p.options.pattern.radius_px = 5;
          p.options.pattern.pitch_px = 48;
        },
-       "right"},
-      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; }, "76 beside them"},
+       "px apart, not 48"},
+      {"bright for dark", [](Pictures& p) { p.options.pattern.bright = true; },
+       "no grid of 9 or more dots"},
   };
   check(mistakes, said_of_finder);
 }

@@ -37,7 +37,7 @@ struct DotPattern {
   Index rows = 0;  ///< 2 to 100; give both rows and cols, or neither
   Index cols = 0;
   double radius_px = 0;        ///< of a dot, >= 1
-  double pitch_px = 0;         ///< between neighbouring dots, > 2 radii; needs a radius
+  double pitch_px = 0;         ///< between neighbouring dots, right to a third
   std::optional<bool> bright;  ///< true: dots brighter than the background; false: darker
   /// Position of the middle of the print. With it, rows and columns at the border of the print may
   /// be out of view on the free pad; without it, all that are given must be seen.
@@ -68,10 +68,7 @@ inline std::string check(const DotFinderOptions& o) {
       {{"pattern.rows", p.rows, counted(p.cols)},
        {"pattern.cols", p.cols, counted(p.rows)},
        {"pattern.radius_px", p.radius_px, p.radius_px == 0 ? within(0, 0) : at_least(1)},
-       {"pattern.pitch_px", p.pitch_px,
-        p.pitch_px == 0    ? within(0, 0)
-        : p.radius_px == 0 ? within(0, 0)
-                           : Range{.min = 2 * p.radius_px, .above_min = true}},
+       {"pattern.pitch_px", p.pitch_px, at_least(0)},
        {"min_contrast", o.min_contrast, {.min = 0, .max = 1, .above_min = true, .below_max = true}},
        {"color_weights", o.color_weights[0], weight},
        {"color_weights", o.color_weights[1], weight},
@@ -128,25 +125,23 @@ class DotFinder {
       refusal_ = "no picture of 8 or 16 bit with one, three or four channels";
       return;
     }
-    const Attempt best = options.pattern.pitch_px > 0
-                             ? attempt(free_frame, options, known_look(options))
-                             : search(free_frame, options);
+    const Attempt best = search(free_frame, options);
     look_ = best.look;
     free_ = best.dots;
-    refusal_ = refusal_of(best);
+    refusal_ = refusal_of(best, options.pattern.pitch_px);
     if (refusal_.empty() && options.pattern.rows > 0) {
       refusal_ = placed(options.pattern);
     }
     if (!refusal_.empty()) {
       return;
     }
-    spots_.emplace(size_, look_, options.where);
-    print_.emplace(free_,
-                   [where = options.where, size = size_, r = 2 * look_.radius_px](const Place& at) {
-                     const cv::Rect2d view(r, r, size.width - 1 - 2 * r, size.height - 1 - 2 * r);
-                     return view.contains({at.x, at.y}) &&
-                            (where.empty() || where(cvRound(at.y), cvRound(at.x)) != 0);
-                   });
+    spots_.emplace(look_, options.where);
+    const double edge = look_.radius_px + (std::max)(look_.radius_px, look_.edge_px + 2);
+    print_.emplace(free_, [where = options.where, size = size_, edge](const Place& at) {
+      const cv::Rect2d view(edge, edge, size.width - 1 - 2 * edge, size.height - 1 - 2 * edge);
+      return view.contains({at.x, at.y}) &&
+             (where.empty() || where(cvRound(at.y), cvRound(at.x)) != 0);
+    });
     seeds_px_ = print_->seeds_px();
   }
 
@@ -164,20 +159,19 @@ class DotFinder {
     found.rows = rows();
     found.cols = cols();
     found.radius_px = look_.radius_px;
-    found.pitch_px = look_.pitch_px;
+    found.pitch_px = detail::pitch_of(free_);
     found.bright = look_.bright;
     return found;
   }
 
   /// The dots of the next frame, by their printed row and column; NaN for a lost dot. Takes
-  /// O(pixels + dots) time. Small buffers are allocated on each call; those of the frame's size are
-  /// kept.
+  /// O(pixels + dots) time and allocates its buffers.
   template <dot_grid Dots>
   DotResult operator()(const cv::Mat& frame, Dots&& dots_px) {
     if (!ok() || frame.size() != size_ || !detail::is_picture(frame)) {
       return {};
     }
-    return label(spots_->find(frame, workspace_), dots_px);
+    return label(spots_->find(frame), dots_px);
   }
 
   /// The same from spots in any order that another program has found. Those that are not finite, or
@@ -223,14 +217,19 @@ class DotFinder {
     detail::SpotLook look;
     detail::Places dots;
     Index beside = 0;  ///< spots beside the grid, within two and a half pitches of a dot
-    detail::TypicalSpot spot;
+    detail::SpotFinder::Typical spot;
     double score = 0;
   };
 
   /// Why the dots of an attempt are no print; "" if they are one.
-  static std::string refusal_of(const Attempt& one) {
+  static std::string refusal_of(const Attempt& one, double given_pitch_px) {
     if (one.dots.rows() == 0) {
       return "no grid of 9 or more dots";
+    }
+    const double pitch_px = detail::pitch_of(one.dots);
+    if (given_pitch_px > 0 &&
+        (std::max)(pitch_px, given_pitch_px) > 1.5 * (std::min)(pitch_px, given_pitch_px)) {
+      return detail::print("dots %.3g px apart, not %.3g", pitch_px, given_pitch_px);
     }
     const Index count = count_present(one.dots);
     return 9 * one.beside > count
@@ -267,20 +266,14 @@ class DotFinder {
     return "";
   }
 
-  static detail::SpotLook known_look(const DotFinderOptions& o) {
-    return {o.pattern.radius_px, o.pattern.pitch_px, o.pattern.bright.value_or(false),
-            o.min_contrast, o.color_weights};
-  }
-
   /// Finds and scores the grid for one look. The score favours many dots, few other spots and a
   /// high contrast. Contrast matters because the blocks of a compressed image form a grid, too, but
   /// a faint one.
   static Attempt attempt(const cv::Mat& frame,
                          const DotFinderOptions& options,
                          const detail::SpotLook& look) {
-    const detail::SpotFinder finder(frame.size(), look, options.where);
-    detail::SpotWorkspace workspace;
-    const std::vector<Point2<double>> spots = finder.find(frame, workspace);
+    detail::SpotFinder finder(look, options.where);
+    const std::vector<Point2<double>> spots = finder.find(frame);
     Attempt one;
     one.look = look;
     one.dots = detail::lattice_of(spots);
@@ -305,44 +298,37 @@ class DotFinder {
     return one;
   }
 
-  /// Tries radii and both signs (dark, bright), and returns the grid with the best score.
+  /// Tries radii, if none is given, and both signs (dark, bright). The grid with the best score is
+  /// looked for again with the radius and the blur that its dots have, as long as the score stays
+  /// at 90 % or more of the last one.
   static Attempt search(const cv::Mat& frame, const DotFinderOptions& options) {
     constexpr double smallest_px = 1.5, step = 1.4;
-    constexpr double usual_pitch = 5;  // radii
+    constexpr int rounds = 2;
     const DotPattern& given = options.pattern;
     const bool known = given.radius_px > 0;
-    const double largest_px = known ? given.radius_px : (std::min)(frame.cols, frame.rows) / 12.0;
+    const double largest_px = known ? given.radius_px : (std::min)(frame.cols, frame.rows) / 8.0;
     Attempt best;
     for (double r = known ? given.radius_px : smallest_px; r <= largest_px; r *= step) {
       for (const bool bright : {false, true}) {
         if (bright == given.bright.value_or(bright)) {
-          const Attempt one =
-              attempt(frame, options,
-                      {r, usual_pitch * r, bright, options.min_contrast, options.color_weights});
+          const Attempt one = attempt(
+              frame, options, {r, 0.5, 2, bright, options.min_contrast, options.color_weights});
           best = one.score > best.score ? one : best;
         }
       }
     }
-    return refined(frame, options, best);
-  }
-
-  /// Repeats the attempt with the radius and pitch found, as long as the score stays at 90 % or
-  /// more of the last one.
-  static Attempt refined(const cv::Mat& frame, const DotFinderOptions& options, Attempt one) {
-    constexpr int rounds = 2;
-    for (int round = 0; round < rounds && one.dots.rows() > 0; ++round) {
-      detail::SpotLook look = one.look;
-      look.pitch_px = detail::pitch_of(one.dots);
-      const double given_px = options.pattern.radius_px;
-      look.radius_px = (std::min)((std::max)(given_px > 0 ? given_px : one.spot.radius_px, 1.0),
-                                  0.4 * look.pitch_px);
+    for (int round = 0; round < rounds && best.spot.radius_px > 0; ++round) {
+      detail::SpotLook look = best.look;
+      look.radius_px = known ? given.radius_px : (std::max)(best.spot.radius_px, 1.0);
+      look.edge_px = best.spot.edge_px;
+      look.max_residual = detail::SpotLook().max_residual;
       const Attempt next = attempt(frame, options, look);
-      if (next.score < 0.9 * one.score) {
+      if (next.score < 0.9 * best.score) {
         break;
       }
-      one = next;
+      best = next;
     }
-    return one;
+    return best;
   }
 
   cv::Size size_;
@@ -353,7 +339,6 @@ class DotFinder {
   std::vector<Place> seeds_px_;  ///< where the seeds of labels are looked for
   std::optional<detail::SpotFinder> spots_;
   std::optional<detail::DotPrint> print_;
-  detail::SpotWorkspace workspace_;
 };
 
 }  // namespace v1
