@@ -293,8 +293,7 @@ struct Pad {
   Image<Point3<double>> free_dots_mm;
   std::optional<FingertipOptions> options;
 
-  Pad(const Scene& scene, const Frames& frames, const Condition& of) {
-    test::Random random(11);
+  Pad(const Scene& scene, const Frames& frames, const Condition& of, test::Random& random) {
     const auto shape_mm = shrunk(scene.depth_mm(0), of.shrink);
     const auto free = frames.reference(of, random);
     Camera<double> camera = frames.camera;
@@ -315,7 +314,12 @@ struct Pad {
     o.side_dots = static_cast<Index>(scene["side_dots"]);
     o.wrench.emplace();
     o.wrench->cap = {scene["base_mm"], scene["mould_mm"], scene["mooney_share"]};
-    o.wrench->modulus_n_per_mm = scene["modulus_n_per_mm"];
+    // what is not known exactly is as far off as the options say
+    o.wrench->modulus_n_per_mm =
+        scene["modulus_n_per_mm"] * (1 + o.wrench->modulus_sd_share * random.normal());
+    for (const auto& step : scene.steps) {
+      o.wrench->full_scale_n = std::max(o.wrench->full_scale_n, std::abs(step.at("fz")));
+    }
     const auto n = static_cast<Index>(scene["dots"]);
     const auto px = scene.points("dots.f64", static_cast<std::size_t>(n * n), 0);
     Image<Point2<double>> dots(n, n);
@@ -474,10 +478,14 @@ class Judge {
 };
 
 void run(const Scene& scene, const Frames& frames, const Condition& of) {
-  const Pad pad(scene, frames, of);
+  std::uint64_t seed = 23;  // each condition of each scene has noise of its own
+  for (const char letter : of.name + scene.name) {
+    seed = 31 * seed + static_cast<std::uint64_t>(letter);
+  }
+  test::Random random(seed);
+  const Pad pad(scene, frames, of, random);
   Fingertip fingertip(*pad.options);
   Judge judge(scene, of);
-  test::Random random(23);
   const auto n = pad.free_dots_mm.rows();
   const auto sides = static_cast<std::size_t>(scene["side_dots"]);
   const double shrink = of.shrink, shift = (shrink - 1) / 2;
@@ -501,8 +509,9 @@ void run(const Scene& scene, const Frames& frames, const Condition& of) {
       marks[s].px = seen(side_px[s], of.side_dots_lost);
       marks[s].sd_px = 0.02;
     }
+    const double gauge = std::max(of.pressure_noise, pad.options->wrench->pressure_sd_share);
     const double pressure =
-        scene.steps[k].at("p") * (1 + of.pressure_offset + of.pressure_noise * random.normal());
+        scene.steps[k].at("p") * (1 + of.pressure_offset + gauge * random.normal());
     const double time_s = static_cast<double>(k) / 30 + of.clock_s * random.normal();
     const auto touch = fingertip(frame.red, frame.green, dots, pressure, time_s, marks);
     judge(k, touch, fingertip);

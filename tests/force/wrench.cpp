@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -355,6 +356,55 @@ TEST_CASE("wrench: what a wrong modulus does is in the covariance", "[wrench]") 
         CHECK(std::fabs(std::fabs(change) - told) < scale + 0.05 * told);
       }
     }
+  }
+}
+
+TEST_CASE("wrench: a free pad says so whatever its modulus, with dots up to the end of the reach",
+          "[wrench]") {
+  const RimScene& s = scene("drag");
+  auto options = SeenRim::options_of(s, true);
+  options.modulus_sd_share = 1;
+  SeenRim rim(s, options, 0, 5);
+  const Camera<double> camera = s.camera();
+  for (int k = 0; k < 24; ++k) {
+    const double phi = std::numbers::pi / 12 * k;
+    double radius_px = 0;  // of the circle at the end of the reach
+    std::optional<Mark> mark;
+    while (!mark) {
+      radius_px += 0.5;
+      mark = rim.wrench.place_in_free_picture({camera.center_x_px + radius_px * std::cos(phi),
+                                               camera.center_y_px + radius_px * std::sin(phi)});
+    }
+    rim.marks.push_back(*mark);
+  }
+  const auto result = rim.wrench(rim.marks, s.frames.front().pressure_mpa);
+  CHECK(result.marks == static_cast<Index>(rim.marks.size()));
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    CAPTURE(k);
+    CHECK(std::sqrt(result.covariance(k, k)) < (k < 3 ? 0.04 : 1.0));
+  }
+}
+
+TEST_CASE("wrench: the covariance does not need the dots' sd", "[wrench]") {
+  const RimScene& s = scene("drag");
+  std::array<double, 6> sum_sq = {};  // of errors over their sd
+  constexpr int draws = 40;
+  for (int draw = 0; draw < draws; ++draw) {
+    SeenRim rim(s, SeenRim::options_of(s, true), 0.02, static_cast<std::uint64_t>(draw));
+    for (Mark& mark : rim.marks) {
+      mark.sd_px *= mark.arc_mm < 3 ? 1 : 4;
+    }
+    const auto result = rim.fit(3);
+    const auto found = parts(result);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      sum_sq[k] += square(found[k] - s.frames[3].load[k]) / result.covariance(i, i);
+    }
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    CAPTURE(k);
+    CHECK(sum_sq[k] > 0.5 * draws);
+    CHECK(sum_sq[k] < 2 * draws);
   }
 }
 

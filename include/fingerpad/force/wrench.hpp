@@ -150,9 +150,12 @@ class Wrench {
     begun_ = look_at_free(load * (1 + more));
     const FreeRadii under_more = free_radius_mm_;
     begun_ = begun_ && look_at_free(load);
-    for (std::size_t k = free_radius_mm_.size() - 1; begun_ && k-- > 0;) {
+    for (std::size_t k = 1; begun_ && k < free_radius_mm_.size(); ++k) {
       const auto arc = arc_of(under_more, free_radius_mm_[k]);
-      arc_by_load_mm_[k] = arc ? (*arc - arc_at(k)) / more : arc_by_load_mm_[k + 1];
+      const double before = arc_by_load_mm_[k - 1];
+      // inward of what both pictures show it goes on as before
+      arc_by_load_mm_[k] =
+          arc ? (*arc - arc_at(k)) / more : 2 * before - (k > 1 ? arc_by_load_mm_[k - 2] : 0.0);
     }
     return begun_;
   }
@@ -202,8 +205,9 @@ class Wrench {
         return result;
       }
     }
-    result.misfit = std::sqrt(misfit_ / freedom());
-    read_load(result);
+    const double degrees = freedom();
+    result.misfit = std::sqrt(misfit_ / degrees);
+    read_load(static_cast<double>(2 * places_.size()) / degrees, result);
     result.status = result.misfit > 2.5                  ? WrenchStatus::poor_fit
                     : is_uncertain(result, pressure_mpa) ? WrenchStatus::uncertain
                                                          : WrenchStatus::ok;
@@ -425,7 +429,9 @@ class Wrench {
 
   using Axes = Eigen::Matrix<double, 6, 1>;
 
-  void read_load(WrenchResult& result) {
+  /// The variance of each residual is its square times `per_square`, so that no sd_px need be
+  /// right; that of each parameter known before is what it is known to.
+  void read_load(double per_square, WrenchResult& result) {
     tangent_.slopes_of_load({of_load_.data(), static_cast<std::size_t>(of_load_.size())});
     const double modulus = options_.modulus_n_per_mm, less = 0.005;
     const Axes axes = axes_after_step(modulus);
@@ -445,12 +451,23 @@ class Wrench {
     }
     for (Eigen::Index k = 0; k < 6; ++k) {  // one by one, because a block allocates
       auto column = of_load_.col(k).head(gradient_.size());
-      solver_.matrixL().solveInPlace(column);
+      solver_.solveInPlace(column);
     }
-    const auto share = of_load_.topRows(gradient_.size());
-    result.covariance = share.transpose().lazyProduct(share);
-    result.covariance *= square(modulus * result.misfit);
-    result.covariance += by_modulus * by_modulus.transpose();
+    result.covariance = by_modulus * by_modulus.transpose();
+    const auto add = [&](double variance, const auto& by_parameters) {
+      Axes by;
+      for (Eigen::Index k = 0; k < 6; ++k) {
+        by[k] = modulus * of_load_.col(k).head(gradient_.size()).dot(by_parameters);
+      }
+      result.covariance += variance * by * by.transpose();
+    };
+    for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
+      add(per_square * square(weights_[row] * residuals_[row]),
+          slopes_.row(row).head(gradient_.size()).transpose());
+    }
+    for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
+      add(weight_[static_cast<std::size_t>(k)], Eigen::VectorXd::Unit(gradient_.size(), k));
+    }
   }
 
   /// Force and moment at the end of the last step.
@@ -470,9 +487,11 @@ class Wrench {
     centre_.back() /= 1 - less;
     parameters_.back() /= 1 - less;
     for (Seen& seen : places_) {
-      const double arc = seen.mark.arc_mm;
-      const double change = less * arc_by_load_mm_[static_cast<std::size_t>(arc / arc_at(1) + 0.5)];
-      annulus_.shift(seen.place, (std::clamp)(arc + change, 0.0, reach_mm()));
+      const double arc = seen.mark.arc_mm, cells = arc / arc_at(1);
+      const auto k = (std::min)(static_cast<std::size_t>(cells), arc_by_load_mm_.size() - 2);
+      const double by_load =
+          std::lerp(arc_by_load_mm_[k], arc_by_load_mm_[k + 1], cells - static_cast<double>(k));
+      annulus_.shift(seen.place, arc + less * by_load);
     }
     for (int step = 0; step < 2; ++step) {
       annulus_.march(parameters_);
