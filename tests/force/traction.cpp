@@ -191,38 +191,6 @@ TEST_CASE("membrane triangle: a stretch above 5 or below 1 / 5 is refused", "[tr
   CHECK_FALSE(Triangle({0, 0, 0}, {1, 0, 0}, {0.5, missing, 0}).is_known());
 }
 
-TEST_CASE("traction: the pull of a cell is the mean over both diagonals", "[traction]") {
-  // one cell in the middle of a grid of one pad is deformed; the loads are the pulls of all cells
-  Dots free = flat(3, 1.5), dots = flat(3, 1.5);
-  for (std::size_t k = 0; k < 9; ++k) {
-    const auto x = static_cast<double>(k);
-    free.cells[k] = free.cells[k] + Vector{0.1 * std::sin(x), 0.1 * std::cos(3 * x), 0.02 * x};
-    dots.cells[k] = 1.2 * free.cells[k] + Vector{0.1 * std::cos(x), 0.1 * std::sin(2 * x), 9};
-  }
-  const double mu_t = 0.4, p = 0.02;
-  TractionField field(free, {.mu_t_n_per_mm = mu_t});
-  REQUIRE(field(dots, Flags(3, 3, 0), p).has_force());
-  Vector pull{0, 0, 0}, area{0, 0, 0};
-  for (const auto& [i, j] : {std::pair<Index, Index>{0, 0}, {0, 1}, {1, 0}, {1, 1}}) {
-    const auto corners = [&, i = i, j = j](const Dots& d, std::size_t c) {
-      const std::array<Vector, 4> x = {d(i, j), d(i, j + 1), d(i + 1, j + 1), d(i + 1, j)};
-      return Corners<double>{x[(c + 3) % 4], x[c], x[(c + 1) % 4]};
-    };
-    for (std::size_t c = 0; c < 4; ++c) {
-      const auto now = corners(dots, c);
-      const auto f = test::corner_forces(test::stress_free(corners(free, c)), now);
-      for (std::size_t n = 0; n < 3; ++n) {
-        if (distance(now[n], dots(1, 1)) == 0) {
-          pull = pull + 0.5 * f[n];
-          area = area + 1.0 / 12 * test::twice_area_vector(now);
-        }
-      }
-    }
-  }
-  CHECK(distance(field.area_mm2()(1, 1), area) < 1e-14);
-  CHECK(distance(size(area) * field.load_mpa()(1, 1), -1.0 * (mu_t * pull + p * area)) < 1e-14);
-}
-
 TEST_CASE("traction: an inflated cap carries no load", "[traction]") {
   const Balloon b;
   const double coarse = b.load_rms(1.5), fine = b.load_rms(0.75), finer = b.load_rms(0.375);
@@ -284,20 +252,6 @@ TEST_CASE("traction: shear that grows along x is held by the object", "[traction
       CHECK(field.pressure_mpa()(i, j) == Approx(p));
     }
   }
-}
-
-TEST_CASE("traction: moment about the origin", "[traction]") {
-  const Index n = 9;
-  TractionField field(flat(n, 1), {.mu_t_n_per_mm = 0.4, .ring_dots = 0, .fade_dots = 0});
-  auto dots = flat(n, 1);
-  for (auto& p : dots.cells) {
-    p = p + Vector{3, 5, 10};
-  }
-  const double p = 0.02;
-  const auto r = field(dots, touch(n, 4, 4), p);
-  REQUIRE(r.has_force());
-  CHECK(distance(r.force_n, Vector{0, 0, -p}) < 1e-14);
-  CHECK(distance(r.moment_n_mm, Vector{-5 * p, 3 * p, 0}) < 1e-14);
 }
 
 TEST_CASE("traction: the ring and what fades out", "[traction]") {
@@ -513,47 +467,6 @@ TEST_CASE("traction: bad parameters are refused", "[traction]") {
                           "TractionField: rows = 2, must be"));
   CHECK(test::begins_with(test::refusal([] { TractionField(Dots(5, 2)); }),
                           "TractionField: cols = 2, must be"));
-}
-
-TEST_CASE("traction: derivatives with respect to the pressure", "[traction]") {
-  using D = test::Tangent<double>;
-  const auto s = test::traction_scene("tilt");
-  TractionField<D> field(test::stress_free_dots(), {.mu_t_n_per_mm = D(0.5)});
-  const auto r = field(s.dots, s.contact, D(s.pressure_mpa, 1));
-  REQUIRE(r.ok());
-  TractionField plain(test::stress_free_dots(), {.mu_t_n_per_mm = 0.5});
-  const auto up = plain(s.dots, s.contact, s.pressure_mpa + 1e-3);
-  const auto down = plain(s.dots, s.contact, s.pressure_mpa - 1e-3);
-  CHECK(r.force_n.z.d == Approx((up.force_n.z - down.force_n.z) / 2e-3));
-  CHECK(field.pressure_mpa()(10, 10).d == Approx(1));
-}
-
-TEST_CASE("traction: least squares would err where the balance does not", "[traction]") {
-  // Noise adds to the square of the pulls, but not to the pulls along the normals, which the
-  // balance uses.
-  const Balloon b;
-  const Index n = 13;
-  TractionField field(cap(n, 1.5, b.radius, 1), {.mu_t_n_per_mm = b.mu_t});
-  test::Gauss gauss(2);
-  double along = 0, square_sum = 0;
-  double balance = 0;
-  for (int k = 0; k < 30; ++k) {
-    const auto dots = test::noisy(cap(n, 1.5, b.radius, b.stretch), 0.02, gauss);
-    balance += field(dots, Flags(n, n, 0), b.pressure()).free_mu_t_n_per_mm / 30;
-    for (Index i = 1; i + 1 < n; ++i) {
-      for (Index j = 1; j + 1 < n; ++j) {
-        // pull for mu t = 1 N/mm: the load without the pressure
-        const Vector& area = field.area_mm2()(i, j);
-        const Vector pull =
-            -1 / b.mu_t * (size(area) * field.load_mpa()(i, j) + b.pressure() * area);
-        along -= b.pressure() * dot(pull, area);
-        square_sum += squared_norm(pull);
-      }
-    }
-  }
-  INFO("least squares " << along / square_sum << ", balance " << balance);
-  CHECK(along / square_sum < 0.7 * b.mu_t);
-  CHECK(balance == Approx(b.mu_t).epsilon(0.02));
 }
 
 using Vector = Point3<double>;

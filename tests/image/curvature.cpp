@@ -158,23 +158,6 @@ TEMPLATE_TEST_CASE_SIG("curvature: nothing flat is lost, but by the published fo
   flat([](double x, double) { return std::floor(x * 20) / 4; }, 1e4);
 }
 
-TEST_CASE("curvature: the published form loses what lies level in one direction") {
-  const auto published = [](const auto& depth_at_mm) {
-    double sum = 0;
-    for (const detail::RingOffset& o : detail::ring_offsets(10, 36)) {
-      const double x = static_cast<double>(o.col) * 0.0625, y = static_cast<double>(o.row) * 0.0625;
-      sum += published::circle_center_curvature(std::hypot(x, y), depth_at_mm(-x, -y),
-                                                depth_at_mm(0.0, 0.0), depth_at_mm(x, y));
-    }
-    return sum / 18;
-  };
-  CHECK(published([](double x, double y) { return std::sqrt(400 - x * x - y * y); }) ==
-        Approx(0.1).epsilon(1e-4));
-  CHECK(std::isnan(published([](double, double) { return 10.5; })));
-  CHECK(std::isnan(published([](double x, double) { return 10 + x / 4; })));
-  CHECK(std::isnan(published([](double, double y) { return 10 - y / 8; })));
-}
-
 TEST_CASE("curvature: seen through a camera a tilted plane stays flat, and a ball round") {
   const double growth = 1 / 66.5;
   const Through camera = through(0.0768, growth);
