@@ -390,29 +390,3 @@ TEST_CASE("images larger than any are refused by name", "[mistakes]") {
     }
   }
 }
-
-TEST_CASE("a copy is as good as the first", "[mistakes]") {
-  const Pad pad;
-  const auto frame = pad.frame<std::uint8_t>(pad.pressed_depths(2), 1, 5);
-  auto first = pad.estimator<float>({.window_px = 5});
-  auto copy = first;
-  Image<float> a(pad.rows, pad.cols), b(pad.rows, pad.cols);
-  CHECK(first(frame.red, frame.green, a).valid_pixels() > 1000);
-  CHECK(copy(frame.red, frame.green, b).valid_pixels() > 1000);
-  CHECK(test::same_bits(a, b));
-
-  ContactTest contact_test;
-  contact_test.ring_px = 3;
-  ContactRegion<> region(pad.camera, pad.rows, pad.cols, contact_test);
-  ContactRegion<> region_copy = region;
-  Image<std::uint8_t> mask(pad.rows, pad.cols), other(pad.rows, pad.cols);
-  CHECK(region(a, mask).ok());
-  CHECK(region_copy(a, other).ok());
-  CHECK(mask.cells == other.cells);
-
-  NeighbourLightCompensation<> light_first({5}, 0.8F, pad.free_depths());
-  auto light_copy = light_first;
-  CHECK(light_first(a, a) == FrameStatus::ok);
-  CHECK(light_copy(b, b) == FrameStatus::ok);
-  CHECK(test::same_bits(a, b));
-}

@@ -275,37 +275,6 @@ TEST_CASE("each plane of a sampled reference holds the means of blocks", "[sampl
   CHECK(half.depth_mm[2] == 7.5);
 }
 
-TEST_CASE("samples of red divided by a gain have the same depth with that gain", "[sampling]") {
-  const test::Pad pad;
-  auto reference = pad.reference<double>();
-  auto frame = pad.frame<double>(pad.pressed_depths(3));
-  const auto depth_of = [&] {
-    Image<double> red(pad.rows / 2, pad.cols / 2), green = red;
-    for (const auto& [from, to] : {std::pair(&frame.red, &red), {&frame.green, &green}}) {
-      for (Index k = 0; k < 4 * red.rows() * red.cols(); ++k) {
-        (*to)(k / pad.cols / 2, k % pad.cols / 2) += from->cells[static_cast<std::size_t>(k)] / 4;
-      }
-    }
-    DepthEstimator<double> estimator(sampled(pad.camera, 2), pad.fluid, sampled(reference, 2),
-                                     {.window_px = 5, .step = 2});
-    Image<double> depth(red.rows(), red.cols());
-    CHECK(estimator(red, green, depth).valid_pixels() > 300);
-    return depth;
-  };
-  const auto plain = depth_of();
-  reference.red_gain.resize(reference.depth_mm.size());
-  for (Index i = 0; i < pad.rows; ++i) {
-    for (Index j = 0; j < pad.cols; ++j) {  // one gain in each block of 2 x 2
-      const double gain = 1 + 0.05 * static_cast<double>((i / 2 + 3 * (j / 2)) % 5);
-      reference.red_gain[static_cast<std::size_t>(i * pad.cols + j)] = gain;
-      frame.red(i, j) /= gain;
-    }
-  }
-  const auto gained = depth_of();
-  CHECK(test::largest_error(gained, plain) <= 1e-10);
-  CHECK(test::largest_error(plain, gained) <= 1e-10);
-}
-
 TEST_CASE("sampling refuses steps that no image has", "[sampling]") {
   const auto free = test::Pad().reference<float>();
   CHECK(test::refusal([&] { (void)sampled(free, 0); }) == "sampled: step = 0, must be in 1..16");

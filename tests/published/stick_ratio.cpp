@@ -432,15 +432,3 @@ TEST_CASE("S and D by hand", "[published]") {
   CHECK(two.rises == 0);
   CHECK(two.steps == 4);
 }
-
-TEST_CASE("S and D: D' is D less the net drop", "[published]") {
-  rc::prop("of any sequence (E038)", [] {
-    std::vector<double> ratios;
-    for (std::ptrdiff_t k = test::whole(1, 60); k > 0; --k) {
-      ratios.push_back(test::uniform(0, 1));
-    }
-    const auto m = test::measures_of(ratios);
-    RC_ASSERT(m.rises >= 0);
-    RC_ASSERT(std::abs(m.rises - (m.decreases - (ratios.front() - ratios.back()))) < 1e-13);
-  });
-}
