@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Calibrations: time of a fit ("ns/pixel" is per fit).
 // "a sensor of numbers": the calibrations of a simulated sensor
-// (bench/trials/calibrations/trials.cpp), from newly drawn measurements. Error: of each
+// (bench/trials/calibrations/trials.cpp), from one measurement. Error: of each
 // parameter, relative to the true one, over 100 fits with fresh noise.
 // "... on scenes": curves and maps from contacts of finite-element membranes
 // (tests/data/contacts.csv). Error: of the method, on a scene that the fit does not use. Published
@@ -45,15 +45,14 @@ std::span<const ForceSample<double>> span_of(const Samples& samples) {
 void add_trial(const std::string& name) {
   const bench::Memory memory;
   const auto trial = std::make_shared<trials::Trial>(trials::trial_of(name));
-  const auto chance = std::make_shared<trials::Chance>(1);
   bench::add(
       "a sensor of numbers/" + name, 1, memory.bytes(),
-      [=] { benchmark::DoNotOptimize(trial->bootstrap(*chance)); },
+      [=] { benchmark::DoNotOptimize(trial->again()); },
       [=](auto& counters) {
         trials::Chance fresh(2);
         std::vector<double> errors;
         for (int k = 0; k < 100; ++k) {
-          const auto found = trial->monte_carlo(fresh).values;
+          const auto found = trial->anew(fresh);
           for (std::size_t p = 0; p < found.size(); ++p) {
             if (is_finite(trial->truth[p]) && trial->truth[p] != 0) {
               errors.push_back(found[p] / trial->truth[p] - 1);

@@ -3,10 +3,8 @@
 #pragma once
 // Random numbers that are the same on every machine and for every order of the work.
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <vector>
 
 namespace trials {
 
@@ -27,18 +25,6 @@ class Chance {
   double normal() {
     const double length = std::sqrt(-2 * std::log(1 - uniform()));
     return length * std::cos(2 * std::numbers::pi * uniform());
-  }
-  std::size_t below(std::size_t size) {
-    return static_cast<std::size_t>(uniform() * static_cast<double>(size));
-  }
-  /// Draws as many elements as `all` has, with replacement.
-  template <class T>
-  std::vector<T> drawn_from(const std::vector<T>& all) {
-    std::vector<T> drawn;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      drawn.push_back(all[below(all.size())]);
-    }
-    return drawn;
   }
 
  private:

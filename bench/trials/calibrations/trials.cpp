@@ -50,13 +50,12 @@ Trial absorption() {
   };
   const auto fit = [](const Samples& samples) {
     const auto found = fingerpad::fit_absorption(std::span(samples));
-    return Estimate{{found.fluid.c_red_per_mm,
-                     found.fluid.c_green_per_mm - found.fluid.c_red_per_mm, found.fluid.kappa},
-                    block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1, 2})};
+    return std::vector<double>{found.fluid.c_red_per_mm,
+                               found.fluid.c_green_per_mm - found.fluid.c_red_per_mm,
+                               found.fluid.kappa};
   };
-  return trial({"c_red_per_mm", "c_green_less_c_red_per_mm", "kappa"},
-               {fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa}, 7,
-               measure, draw_samples, fit);
+  return trial({fluid.c_red_per_mm, fluid.c_green_per_mm - fluid.c_red_per_mm, fluid.kappa},
+               measure, fit);
 }
 
 constexpr int light_rows = 20, light_cols = 24;
@@ -109,10 +108,9 @@ Trial neighbour_light() {
     }
     const auto found = fingerpad::fit_neighbour_light(light_pitch_mm, free_mm, measured, truth,
                                                       {light.radius_px, light.radius_px});
-    return Estimate{{found.light.m0_mm_per_rad, found.light.n_per_mm},
-                    diagonal({found.m0_sd, found.n_sd})};
+    return std::vector<double>{found.light.m0_mm_per_rad, found.light.n_per_mm};
   };
-  return trial({"m0_mm_per_rad", "n_per_mm"}, {0.004, 0.2}, 7, measure, draw_samples, fit);
+  return trial({0.004, 0.2}, measure, fit);
 }
 
 /// Ten frames of a free pad with 0.005 mm of noise. The threshold's true value is not known here.
@@ -136,11 +134,9 @@ Trial contact() {
   };
   const auto fit = [=](const std::vector<Map>& frames) {
     const auto pad = fit_contact_threshold(camera, frames, 6);
-    return Estimate{{pad.threshold_per_mm, pad.median_per_mm},
-                    diagonal({pad.median_error_per_mm / 2, pad.median_error_per_mm})};
+    return std::vector<double>{pad.threshold_per_mm, pad.median_per_mm};
   };
-  return trial({"threshold_per_mm", "curvature_of_free_pad_per_mm"}, {none, none}, 3, measure,
-               draw_samples, fit);
+  return trial({none, none}, measure, fit);
 }
 
 // --- rim
@@ -160,14 +156,6 @@ Trial rim() {
     }
     return apexes;
   };
-  // drawn within their pressure, because without one of them the calibration would differ
-  const auto draw = [](const Apexes& seen, Chance& chance) {
-    Apexes drawn;
-    for (std::size_t k = 0; k < seen.size(); ++k) {
-      drawn.push_back(seen[5 * (k / 5) + chance.below(5)]);
-    }
-    return drawn;
-  };
   const auto fit = [=](const Apexes& seen) {
     Apexes means;
     for (std::size_t k = 0; k < seen.size(); ++k) {
@@ -178,11 +166,9 @@ Trial rim() {
     }
     const auto found = fit_rim({base_mm, height_mm}, means,
                                {.pressure_sd_share = 0, .height_sd_mm = 1, .radius_sd_mm = 0});
-    return Estimate{{found.modulus_n_per_mm, found.height_mm},
-                    diagonal({found.modulus_sd_n_per_mm, found.height_sd_mm})};
+    return std::vector<double>{found.modulus_n_per_mm, found.height_mm};
   };
-  return trial({"membrane_modulus_n_per_mm", "stress_free_height_mm"}, {modulus, height_mm}, 0.5,
-               measure, draw, fit);
+  return trial({modulus, height_mm}, measure, fit);
 }
 
 // --- forces
@@ -218,32 +204,28 @@ Samples contacts(Chance& chance) {
 Trial normal_force() {
   const auto fit = [](const Samples& samples) {
     const auto found = fingerpad::fit_normal_force(std::span(samples));
-    return Estimate{{found.curve.coefficients[1], found.curve.coefficients[2]},
-                    block([&](auto i, auto j) { return found.curve.covariance[i][j]; }, {1, 2})};
+    return std::vector<double>{found.curve.coefficients[1], found.curve.coefficients[2]};
   };
-  return trial({"coefficient_1", "coefficient_2"}, {0.5, 0.3}, 0.1, contacts, draw_samples, fit);
+  return trial({0.5, 0.3}, contacts, fit);
 }
 
 template <class Fit>
-Estimate of_shear(const Fit& found) {
-  return {{found.law.slope, found.law.exponent},
-          block([&](auto i, auto j) { return found.covariance[i][j]; }, {0, 1})};
+std::vector<double> of_shear(const Fit& found) {
+  return {found.law.slope, found.law.exponent};
 }
 
 Trial tangential_force() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_tangential_force(std::span(samples), reference_mm));
   };
-  return trial({"force_n_per_mm", "displacement_exponent"}, {2, 0.7}, 0.3, contacts, draw_samples,
-               fit);
+  return trial({2, 0.7}, contacts, fit);
 }
 
 Trial moment() {
   const auto fit = [](const Samples& samples) {
     return of_shear(fingerpad::fit_moment(std::span(samples), reference_mm));
   };
-  return trial({"moment_n_mm_per_rad", "rotation_exponent"}, {40, 1.6}, 0.3, contacts, draw_samples,
-               fit);
+  return trial({40, 1.6}, contacts, fit);
 }
 
 // --- foam
@@ -277,9 +259,9 @@ Trial taxels() {
       }
     }
     const auto found = calibration.fit();
-    return Estimate{{found.typical}, diagonal({found.typical_error})};
+    return std::vector<double>{found.typical};
   };
-  return trial({"noise"}, {noise}, 1, measure, draw_samples, fit);
+  return trial({noise}, measure, fit);
 }
 
 const std::map<std::string, Trial (*)()>& makers() {
@@ -315,9 +297,7 @@ Trial trial_of(const std::string& name) {
   if (found == makers().end()) {
     replay::fail(name, "there is no such calibration");
   }
-  Trial trial = found->second();
-  trial.name = name;
-  return trial;
+  return found->second();
 }
 
 }  // namespace trials

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Calibrations of a simulated sensor that can be repeated: with new noise (Monte Carlo), or with
-// samples drawn with replacement from one measurement (bootstrap).
+// Calibrations of a simulated sensor that can be repeated, with new noise or without.
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,20 +10,12 @@
 
 namespace trials {
 
-/// The parameters that a calibration estimates.
-struct Estimate {
-  std::vector<double> values;
-  std::vector<std::vector<double>> covariance;  ///< analytic; NaN where the fit reports none
-};
-
 struct Trial {
-  std::string name;
-  std::vector<std::string> parameters;
   std::vector<double> truth;
-  Estimate once;  ///< from the measurement that the bootstrap draws from
-  /// Repeats the calibration; throws fingerpad::parameter_error if the data are refused.
-  std::function<Estimate(Chance&)> bootstrap, monte_carlo;
-  double weight = 1;  ///< approximate time of one calibration, ms
+  /// Repeats the calibration of one measurement. Gives the parameters; throws
+  /// fingerpad::parameter_error if the data are refused, as does the next.
+  std::function<std::vector<double>()> again;
+  std::function<std::vector<double>(Chance&)> anew;  ///< measures anew
 };
 
 /// Names of all trials. A trial makes its measurements in trial_of().

@@ -33,18 +33,12 @@ Trial camera_plate() {
     const Dots low = picture(pitch_mm, chance);
     return Pair(low, picture(pitch_mm * (distance_mm + raised_mm) / distance_mm, chance));
   };
-  const auto draw = [](const Pair& pair, Chance& chance) {
-    const Dots low = chance.drawn_from(pair.first);
-    return Pair(low, chance.drawn_from(pair.second));
-  };
   const auto fit = [](const Pair& pair) {
     const auto found = calibrate::fit_camera(pair.first, pair.second, raised_mm, distance_mm);
-    return Estimate{
-        {found.camera.pitch_mm, found.camera.center_x_px, found.camera.plate_distance_mm},
-        diagonal({found.pitch_sd_mm, found.center_sd_px, found.distance_sd_mm})};
+    return std::vector<double>{found.camera.pitch_mm, found.camera.center_x_px,
+                               found.camera.plate_distance_mm};
   };
-  return trial({"pitch_mm", "center_x_px", "plate_distance_mm"}, {pitch_mm, 319.5, distance_mm},
-               0.1, measure, draw, fit);
+  return trial({pitch_mm, 319.5, distance_mm}, measure, fit);
 }
 
 /// Thirty touches of a cap by a ball, with 0.02 mm of noise along each axis.
@@ -66,9 +60,9 @@ Trial cap() {
   };
   const auto fit = [](const Touches& touches) {
     const auto found = calibrate::fit_shape(touches, {ball_mm, base_mm, 0, false});
-    return Estimate{{found.apex_height_mm}, diagonal({found.apex_sd_mm})};
+    return std::vector<double>{found.apex_height_mm};
   };
-  return trial({"apex_height_mm"}, {apex_mm}, 0.1, measure, draw_samples, fit);
+  return trial({apex_mm}, measure, fit);
 }
 
 /// Eight presses of a ball into a gel seen in one channel, with one grey level of noise.
@@ -94,9 +88,9 @@ Trial intensity() {
   };
   const auto fit = [=](const std::vector<Picture>& presses) {
     const auto found = fingerpad::fit_intensity(free, presses, ball_mm, mm_per_px);
-    return Estimate{{found.law.linear_mm}, {{found.covariance[0][0]}}};
+    return std::vector<double>{found.law.linear_mm};
   };
-  return trial({"linear_mm"}, {law_mm}, 5, measure, draw_samples, fit);
+  return trial({law_mm}, measure, fit);
 }
 
 }  // namespace trials
