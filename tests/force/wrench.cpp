@@ -187,6 +187,17 @@ TEST_CASE("wrench: whether it is uncertain goes by the press that is measured", 
     CHECK(result.status == (uncertain ? Status::uncertain : Status::ok));
     CHECK(result.force_n.z == any.force_n.z);
   }
+  // of a press with a modulus that is hardly known, F_z decides
+  const RimScene& pressed = scene("bowl");
+  options = SeenRim::options_of(pressed, true);
+  options.modulus_sd_share = 0.1;
+  const auto press_of = [&](double full_scale_n) {
+    options.full_scale_n = full_scale_n;
+    return SeenRim(pressed, options, 0.06, 7).fit(1);
+  };
+  const double limit_n = 2 * std::sqrt(press_of(100).covariance(2, 2)) / 0.096;
+  CHECK(press_of(0.97 * limit_n).status == Status::uncertain);
+  CHECK(press_of(1.03 * limit_n).ok());
 }
 
 TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
