@@ -117,6 +117,28 @@ TEST_CASE("elastic gel: Hertz, and Cattaneo's share that sticks", "[elastic_gel]
   CHECK(contact.displacement_mm({3 * far, 0}).x == 0);
 }
 
+// Of the load of a fluid pad the slipping part carries all, as the membrane that sticks carries
+// none.
+TEST_CASE("fluid beside elastic: contact of 1 N, and what sticks of it", "[elastic_gel]") {
+  BallOnGel<> contact{GelPad{}};
+  contact.drag(1, {0, 0});
+  const double fluid_mm2 = 1 / 0.019, gel_mm2 = pi * square(contact.radius_mm());
+  INFO("contact in mm^2: fluid at 19 kPa " << fluid_mm2 << ", gel of 0.2 MPa " << gel_mm2);
+  CHECK(fluid_mm2 == Approx(52.6).epsilon(0.01));
+  CHECK(gel_mm2 == Approx(29.1).epsilon(0.01));
+  for (const auto& [load, on_gel] : {std::pair{0.5, 0.63}, {0.8, 0.34}, {0.95, 0.136}}) {
+    // Q = mu P (1 - (c / a)^3), and the share that sticks is (c / a)^2 = 1 - d / max_pull
+    const double stick = std::pow(1 - load, 2.0 / 3);
+    contact.drag(1, {0, 0});
+    contact.drag(1, {(1 - stick) * contact.max_pull_mm(), 0});
+    INFO("of the friction " << load << ": sticks on fluid " << 1 - load << ", on gel "
+                            << contact.stick_share());
+    CHECK(contact.shear_n().x == Approx(load * 0.6));
+    CHECK(contact.stick_share() == Approx(on_gel).margin(0.006));
+    CHECK(1 - load < contact.stick_share());
+  }
+}
+
 TEST_CASE("elastic gel: what sticks goes with the ball, what slips stays behind", "[elastic_gel]") {
   rc::prop("for every gel, load and direction", [] {
     const GelPad pad{.young_mpa = test::log_uniform(0.05, 2),
