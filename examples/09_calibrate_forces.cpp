@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   const std::span<const Sample> all(samples);
 
   const auto fit = [](std::span<const Sample> some) {
-    return fingerpad::fit_normal_force(some, {.degree = 3});
+    return fingerpad::fit_normal_force(some, 3);
   };
   const auto normal = fit(all);
   const auto unseen = leave_one_load_out(all, fit, [](const auto& model, const Sample& s) {

@@ -157,9 +157,10 @@ void add_look_up(const std::string& name,
 void add_normal(const std::string& name,
                 ContactMeasure measure,
                 const Pairs& pairs,
-                const FitOptions& options = {}) {
+                int degree = 2,
+                bool through_zero = true) {
   const auto fit = [=](const Samples& samples) {
-    return fit_normal_force(span_of(samples), options);
+    return fit_normal_force(span_of(samples), degree, through_zero);
   };
   const auto error = [](const auto& found, const ForceSample<double>& s) {
     const NormalForce force(found.curve);
@@ -216,11 +217,11 @@ int main(int argc, char** argv) {
   const Pairs press = {{{"press"}, "drag"}, {{"press"}, "twist"}, {{"press"}, "mix"}};
   constexpr auto area = ContactMeasure::area, depth = ContactMeasure::depth;
   constexpr auto edge = ContactDotsOf::edge, center = ContactDotsOf::center;
-  add_normal("area, degree 2, published", area, press, {.through_zero = false});
-  add_normal("depth, degree 2, published", depth, press, {.through_zero = false});
+  add_normal("area, degree 2, published", area, press, 2, false);
+  add_normal("depth, degree 2, published", depth, press, 2, false);
   add_normal("area, degree 2", area, plates);
-  add_normal("area, degree 3", area, plates, {.degree = 3});
-  add_normal("depth, degree 3", depth, plates, {.degree = 3});
+  add_normal("area, degree 3", area, plates, 3);
+  add_normal("depth, degree 3", depth, plates, 3);
   add_tangential("central dot, published", area, center, 0.65);
   add_tangential("edge dots, area", area, edge);
   add_tangential("edge dots, depth", depth, edge);

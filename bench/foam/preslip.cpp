@@ -103,7 +103,6 @@ void add_detection(const std::string& name, PreslipRule rule) {
 
 int main(int argc, char** argv) {
   using enum PreslipRule;
-  add_detection("published: GraspLift", printed_grasp_lift);
   add_detection("GraspLift, the default", grasp_lift);
   add_detection("published: GraspOptimise", printed_grasp_optimise);
   add_detection("GraspOptimise", grasp_optimise);

@@ -55,7 +55,6 @@ void bind_foam(py::module_& module) {
   py::enum_<PreslipRule>(module, "PreslipRule", "Which rule; see foam/preslip.hpp.")
       .value("grasp_lift", PreslipRule::grasp_lift)
       .value("grasp_optimise", PreslipRule::grasp_optimise)
-      .value("printed_grasp_lift", PreslipRule::printed_grasp_lift)
       .value("printed_grasp_optimise", PreslipRule::printed_grasp_optimise);
   bind_options<Rules>(module, "PreslipOptions",
                       "Options of the pre-slip rules; see foam/preslip.hpp.")

@@ -18,7 +18,6 @@
 namespace python {
 namespace {
 
-using fingerpad::FitOptions;
 using fingerpad::Point2;
 using NormalForce = fingerpad::NormalForce<>;
 using NormalFit = fingerpad::NormalForceFit<>;
@@ -73,11 +72,13 @@ auto without_lock(const Fit& fit) {
 
 NormalFit fit_normal_force(const Array& measure,
                            const Array& normal_force_n,
-                           const FitOptions& options) {
+                           int degree,
+                           bool through_zero) {
   Samples samples = samples_of(measure);
   fill(samples, normal_force_n, "normal_force_n", 1,
        [](Sample& s, Cell x, Cell) { s.normal_force_n = *x; });
-  return without_lock([&] { return fingerpad::fit_normal_force<double>(samples, options); });
+  return without_lock(
+      [&] { return fingerpad::fit_normal_force<double>(samples, degree, through_zero); });
 }
 
 ShearFit fit_tangential_force(const Array& measure,
@@ -151,10 +152,6 @@ void bind_results(py::module_& module) {
 }
 
 void bind_normal_force_fit(py::module_& module) {
-  bind_options<FitOptions>(module, "FitOptions",
-                           "Options of force fits; see calibrate/look_up.hpp.")
-      .def_readwrite("degree", &FitOptions::degree)
-      .def_readwrite("through_zero", &FitOptions::through_zero);
   py::class_<NormalFit>(module, "NormalForceFit", "A fitted curve; NormalForce(fit) looks it up.")
       .def_property_readonly("ok", &NormalFit::ok)
       .def_property_readonly("status", [](const NormalFit& f) { return text_of(f); })
@@ -195,7 +192,7 @@ void bind_shear_fit(py::module_& module) {
 void bind_fits(py::module_& module) {
   module.def(
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
-      py::arg("options") = FitOptions(),
+      py::arg("degree") = 2, py::arg("through_zero") = true,
       "Fits a curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
       "NaN: not measured.");

@@ -381,7 +381,7 @@ def test_fits_have_the_bits_of_cpp_and_are_looked_up(pad, tmp_path):
     for name, unit, column, reference in [("area", "mm2", "flat_area_mm2", 100),
                                           ("depth", "mm", "contact_depth_mm", 2)]:
         measure = contacts[column]
-        normal = fp.fit_normal_force(measure, -contacts["force_z_n"], fp.FitOptions(degree=3))
+        normal = fp.fit_normal_force(measure, -contacts["force_z_n"], degree=3)
         expected = force[f"by_{name}"]
         assert normal.ok, normal.status
         assert normal.coefficients == expected["coefficients"]

@@ -16,7 +16,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/fit_reference.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"

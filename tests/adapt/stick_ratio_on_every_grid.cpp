@@ -93,27 +93,6 @@ TEMPLATE_TEST_CASE("dots that stick are read from every grid, as points of every
 
 TEST_CASE("dots in tensors and vectors are read without a copy", "[adapt][stick_ratio]") {
   const Case c;
-  const auto x = [&](Index i, Index j) { return c.dots(i, j).x; };
-  const auto y = [&](Index i, Index j) { return c.dots(i, j).y; };
-
-  const std::array<std::size_t, 3> flat = {21, 21, 2}, deep = {21, 21, 3};
-  xt::xtensor<float, 3> tensor(flat), spatial(deep);
-  xt::xtensor<float, 3, xt::layout_type::column_major> column_major(flat);
-  xt::xarray<float> array = xt::xarray<float>::from_shape({21, 21, 2});
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) {
-      tensor(i, j, 0) = column_major(i, j, 0) = array(i, j, 0) = spatial(i, j, 0) = x(i, j);
-      tensor(i, j, 1) = column_major(i, j, 1) = array(i, j, 1) = spatial(i, j, 1) = y(i, j);
-      spatial(i, j, 2) = 7;
-    }
-  }
-  CHECK(c.reads_dots(dots_of_tensor(tensor)));
-  CHECK(c.reads_dots(dots_of_tensor(column_major)));
-  CHECK(c.reads_dots(dots_of_tensor(array)));
-  CHECK(dots_of_tensor<3>(spatial)(2, 3).z == 7);
-  CHECK(rows(dots_of_tensor(spatial)) == 0);
-  const xt::xarray<float> line = xt::xarray<float>::from_shape({42});
-  CHECK(rows(dots_of_tensor(line)) == 0);
   CHECK(c.reads_dots(grid_of(c.dots.cells, n, n)));
 }
 

@@ -182,9 +182,8 @@ TEST_CASE("a look-up's covariance is that which the forces' errors carry into it
     samples[k].measure = S(m);
     samples[k].normal_force_n = S::parameter(plain[k].normal_force_n, k);
   }
-  const FitOptions options{.through_zero = false};
-  const auto dual = fit_normal_force(std::span<const ForceSample<S>>(samples), options);
-  const auto fit = fit_normal_force(std::span<const ForceSample<double>>(plain), options);
+  const auto dual = fit_normal_force(std::span<const ForceSample<S>>(samples), 2, false);
+  const auto fit = fit_normal_force(std::span<const ForceSample<double>>(plain), 2, false);
   for (std::size_t i = 0; i <= 2; ++i) {
     const auto& by_i = dual.curve.coefficients[i];
     CHECK(by_i.value == Approx(fit.curve.coefficients[i]).epsilon(1e-12));

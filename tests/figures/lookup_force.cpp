@@ -107,8 +107,7 @@ double full_scale_n() {
 
 NormalForce<> calibrated(const Scenes& scenes, ContactMeasure measure, int degree = 3) {
   const Samples samples = samples_of(scenes, measure);
-  const auto fit =
-      fit_normal_force(std::span<const ForceSample<double>>(samples), {.degree = degree});
+  const auto fit = fit_normal_force(std::span<const ForceSample<double>>(samples), degree);
   CHECK(fit.ok());
   return NormalForce<>(fit.curve);
 }

@@ -307,7 +307,6 @@ TEST_CASE("pre-slip of a simulated object: a warning before it slips, and only w
       every_loosening_is_warned_of(PreslipRule::grasp_optimise, "grasp-optimise");
   const Onsets lift = every_loosening_is_warned_of(PreslipRule::grasp_lift, "grasp-lift");
   every_loosening_is_warned_of(PreslipRule::printed_grasp_optimise, "grasp-optimise as printed");
-  every_loosening_is_warned_of(PreslipRule::printed_grasp_lift, "grasp-lift as printed");
   // a rule that always alarms has the precision of chance; one that never alarms has no recall
   CHECK(lift.chance() < 0.9);
   CHECK(lift.precision() >= 0.99);

@@ -238,8 +238,7 @@ TEST_CASE("mistakes with foam fingers: what is told of single taxels", "[mistake
 }
 
 TEST_CASE("mistakes with foam fingers: one is dead, by the rules as printed", "[mistakes]") {
-  for (const PreslipRule rule :
-       {PreslipRule::printed_grasp_lift, PreslipRule::printed_grasp_optimise}) {
+  for (const PreslipRule rule : {PreslipRule::grasp_lift, PreslipRule::printed_grasp_optimise}) {
     for (const bool dead : {false, true}) {
       const TaxelFeatures<> finger(array_rows, array_cols);
       FoamHand<> hand({finger, finger}, {.rule = rule});

@@ -40,16 +40,15 @@ std::vector<ForceSample<double>> any_samples(Input& in) {
 void try_forces(Input& in) {
   const auto given = any_samples(in);
   const std::span<const ForceSample<double>> samples(given);
-  FitOptions options;
-  options.through_zero = in.flag();
-  options.degree = static_cast<int>(in.whole(1, 3));
+  const bool through_zero = in.flag();
+  const auto degree = static_cast<int>(in.whole(1, 3));
   const auto require_law = [](const ShearFit<>& fit) {
     require(!fit.ok() || (is_finite(fit.law.slope) && is_finite(fit.law.exponent)),
             "a law is finite");
   };
   switch (in.whole(0, 2)) {
     case 0: {
-      const auto fit = fit_normal_force(samples, options);
+      const auto fit = fit_normal_force(samples, degree, through_zero);
       require(!fit.ok() || is_finite(fit.curve.force_n(fit.curve.to)), "a curve is finite");
       return;
     }

@@ -19,7 +19,7 @@ namespace {
 
 PreslipOptions any_rule(Input& in) {
   PreslipOptions options;
-  options.rule = static_cast<PreslipRule>(in.whole(0, 3));
+  options.rule = static_cast<PreslipRule>(in.whole(0, 2));
   options.history = in.whole(0, 60);
   options.centroid_tolerance_mm = in.number(0, 1);
   return options;

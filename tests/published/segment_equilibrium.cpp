@@ -16,7 +16,6 @@
 using namespace fingerpad;
 using published::SegmentEquilibrium;
 using published::SegmentEquilibriumOptions;
-using published::SegmentStatus;
 using test::ArcSide;
 using test::FilmSide;
 using test::MembranePoint;
@@ -76,7 +75,7 @@ TEST_CASE("published six-axis force: a press, and what the direction of the side
   SegmentEquilibrium<> wrench(rim.borders());
   CHECK(wrench.lines() == 72);
   const auto press = wrench(pad, rim.dots([&](double) { return RimLoad{normal, 0}; }), pressed_mpa);
-  REQUIRE(press.status == SegmentStatus::ok);
+  REQUIRE(press.ok());
   const double area = 3.14159265 * pad.contact_mm * pad.contact_mm;
   CHECK(press.force_n.z == Approx(-pressed_mpa * area).epsilon(0.03));
   CHECK(std::hypot(press.force_n.x, press.force_n.y) < 1e-9);
@@ -265,7 +264,7 @@ TEST_CASE("the printed iteration, word for word, on finite-element membranes", "
     CAPTURE(f.name);
     // over a tilted plate, dragged or not, f_h dominates through eq. 9, and the iteration
     // diverges
-    CHECK((r.status == SegmentStatus::not_solved) == (f.scene == "tilt"));
+    CHECK(r.ok() == (f.scene != "tilt"));
     if (f.scene == "drag") {
       along += r.force_n.x * f.force_n.x + r.force_n.y * f.force_n.y;
       along_sq += square(f.force_n.x) + square(f.force_n.y);
@@ -285,17 +284,18 @@ TEST_CASE("published six-axis force: what it refuses", "[published]") {
   const auto dots = rim.dots([](double) { return RimLoad{0.1, 0}; });
   SegmentEquilibrium<> wrench(rim.borders());
   const test::Image<Point3<double>> few(1, 71, {0, 0, 0});
-  CHECK(wrench(pad, few, pressed_mpa).status == SegmentStatus::refused);
-  CHECK(wrench(pad, dots, -1.0).status == SegmentStatus::bad_input);
+  CHECK(!wrench(pad, few, pressed_mpa).ok());
+  CHECK(!wrench(pad, dots, -1.0).ok());
+  CHECK(wrench(pad, dots, pressed_mpa).ok());
   auto without_one = dots;
   without_one(0, 3).y = test::nan;
-  CHECK(wrench(pad, without_one, pressed_mpa).status == SegmentStatus::bad_input);
+  CHECK(!wrench(pad, without_one, pressed_mpa).ok());
   auto flat = dots;
   for (auto& dot : flat.cells) {
     dot.z = 0;
   }
   const auto r = wrench(pad, flat, pressed_mpa);
-  CHECK(r.status == SegmentStatus::bad_input);
+  CHECK(!r.ok());
   CHECK(r.force_n.x != r.force_n.x);
   const auto said = [&](const Options& options) {
     return test::refusal([&] { const SegmentEquilibrium<> refused(rim.borders(), options); });

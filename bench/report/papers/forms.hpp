@@ -210,7 +210,7 @@ inline void add_force_forms(std::vector<Form>& forms) {
   using namespace fingerpad;
   constexpr double full_n = 9.93;
   const Samples press = samples_of(plates_but(""), test::ContactMeasure::area);
-  const NormalForce by_area(fit_normal_force(span_of(press), {.degree = 3}).curve);
+  const NormalForce by_area(fit_normal_force(span_of(press), 3).curve);
   double sum = 0;
   const auto of = [&](const auto& force) {
     return time_of(

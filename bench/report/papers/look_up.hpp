@@ -42,7 +42,7 @@ inline std::vector<double> published_normal(const std::string& scene,
                                             test::ContactMeasure measure) {
   using namespace fingerpad;
   const Samples press = samples_of({"press"}, measure, test::ContactDotsOf::center);
-  const auto curve = fit_normal_force(span_of(press), {.through_zero = false}).curve;
+  const auto curve = fit_normal_force(span_of(press), 2, false).curve;
   const Samples on = samples_of({scene}, measure, test::ContactDotsOf::center);
   std::vector<double> errors;
   if (scene == "press") {
@@ -78,7 +78,7 @@ inline std::vector<std::string> plates_but(const std::string& scene) {
 inline std::vector<double> default_normal(const std::string& scene, test::ContactMeasure measure) {
   using namespace fingerpad;
   const Samples others = samples_of(plates_but(scene), measure);
-  const auto curve = fit_normal_force(span_of(others), {.degree = 3}).curve;
+  const auto curve = fit_normal_force(span_of(others), 3).curve;
   std::vector<double> errors;
   for (const auto& s : samples_of({scene}, measure)) {
     errors.push_back(NormalForce(curve)(s.measure).force_n - s.normal_force_n);

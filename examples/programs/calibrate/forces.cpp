@@ -117,7 +117,7 @@ double unseen(Samples samples, const Fit& fit, const ErrorOf& error_of) {
 }
 
 void add_normal(Samples samples, const Measure& by, Outcome& outcome) {
-  const auto fit_of = [](Samples some) { return fingerpad::fit_normal_force(some, {.degree = 3}); };
+  const auto fit_of = [](Samples some) { return fingerpad::fit_normal_force(some, 3); };
   const NormalFit fit = fit_of(samples);
   const double unseen_n = unseen(samples, fit_of, [](const NormalFit& model, const Sample& s) {
     return model.curve.force_n(s.measure) - s.normal_force_n;

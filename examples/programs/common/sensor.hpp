@@ -13,7 +13,7 @@
 #include "common/images.hpp"
 #include "fingerpad/contact/contact_region.hpp"
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/pad_light.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/dots/side_dots.hpp"
 #include "fingerpad/force/look_up.hpp"
 #include "fingerpad/optics/camera.hpp"

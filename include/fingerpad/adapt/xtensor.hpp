@@ -71,42 +71,5 @@ struct grid_traits<G> {
   }
 };
 
-namespace detail {
-template <int Coordinates, scalar S>
-constexpr auto point_of_coordinates(const S& x, const S& y, const S& z) {
-  if constexpr (Coordinates == 3) {
-    return Point3<S>{x, y, z};
-  } else {
-    return Point2<S>{x, y};
-  }
-}
-}  // namespace detail
-
-/// A view of the dots of a (rows, cols, 2) tensor in memory, or of (rows, cols, 3) with depths. A
-/// tensor of another shape gives a grid without dots. The tensor must outlive the view.
-template <int Coordinates = 2, class Tensor>
-  requires(xt::is_xexpression<Tensor>::value&& detail::xtensor_in_memory<const Tensor>)
-auto dots_of_tensor(const Tensor& tensor) {
-  static_assert(Coordinates == 2 || Coordinates == 3);
-  static_assert(
-      detail::rank_when_compiling<Tensor> == 0 || detail::rank_when_compiling<Tensor> == 3,
-      "dots are a tensor of three dimensions: rows, cols, and 2 or 3 coordinates");
-  const bool fits = tensor.dimension() == 3 && static_cast<int>(tensor.shape()[2]) == Coordinates;
-  const auto* const data = tensor.data() + tensor.data_offset();
-  const auto stride = [&](std::size_t k) {
-    return fits ? static_cast<Index>(tensor.strides()[k]) : 0;
-  };
-  const Index row_stride = stride(0), col_stride = stride(1), step = stride(2);
-  const auto size = [&](std::size_t k) { return fits ? static_cast<Index>(tensor.shape()[k]) : 0; };
-  return LazyView(size(0), size(1), [=](Index i, Index j) {
-    const auto* const dot = data + i * row_stride + j * col_stride;
-    return detail::point_of_coordinates<Coordinates>(dot[0], dot[step],
-                                                     dot[(Coordinates - 1) * step]);
-  });
-}
-template <int Coordinates = 2, class Tensor>
-  requires(xt::is_xexpression<Tensor>::value && !std::is_lvalue_reference_v<Tensor>)
-auto dots_of_tensor(Tensor&& temporary) = delete;
-
 }  // namespace v1
 }  // namespace fingerpad

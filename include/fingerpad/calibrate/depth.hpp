@@ -29,9 +29,8 @@
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
-#include "fingerpad/depth/pad_light.hpp"
+#include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/triangle.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
@@ -53,9 +54,7 @@ class TaxelNoiseCalibration {
         window_(now_.size(), options.window),
         residuals_(static_cast<std::size_t>(options.window), S(0)),
         variances_(now_.size()),
-        is_bad_(now_.size(), false),
-        times_((std::min)(residuals_.size(), std::size_t{64})),
-        products_(times_ * times_, S(0)) {}
+        is_bad_(now_.size(), false) {}
 
   /// Adds the next sample; false, and nothing changed, if the array has another size or the time is
   /// not later. A jump of the clock begins a new window. A window with a bad reading of a taxel is
@@ -87,18 +86,16 @@ class TaxelNoiseCalibration {
     window_.push([&](std::size_t k) { return now_[k]; }, is_new);
     if (++in_window_ == features_.options().window) {
       ++windows_;
-      std::fill(products_.begin(), products_.end(), S(0));
-      int moving = 0;
+      std::vector<std::vector<S>> moving;  // residuals of the taxels that change
       for (std::size_t k = 0; k < now_.size(); ++k) {
         if (!is_bad_[k]) {
           variances_[k].push_back(window_.residuals(k, residuals_));
           if (k < taxel_count() && S(0) < variances_[k].back()) {
-            add_product();
-            ++moving;
+            moving.push_back(residuals_);
           }
         }
       }
-      if (moving >= 3 && times_ >= 8) {  // else chance correlates them as much
+      if (moving.size() >= 3 && residuals_.size() >= 8) {  // else chance correlates them as much
         shared_.push_back(mean_squared_correlation(moving));
       }
     }
@@ -162,27 +159,21 @@ class TaxelNoiseCalibration {
 
   std::size_t taxel_count() const { return now_.size() - 2; }
 
-  /// Adds the products of a taxel's residuals at all pairs of times, of mean square 1. The sum over
-  /// the taxels has the same squares as that over the times has, of which there are fewer.
-  void add_product() {
-    S squares = S(0);
-    for (std::size_t a = 0; a < times_; ++a) {
-      squares = squares + square(residuals_[a]);
-    }
-    for (std::size_t a = 0; a < times_ && S(0) < squares; ++a) {
-      for (std::size_t b = 0; b < times_; ++b) {
-        S& product = products_[a * times_ + b];
-        product = product + residuals_[a] * residuals_[b] / squares;
+  /// Over all pairs of taxels, in at most 64 samples.
+  static S mean_squared_correlation(const std::vector<std::vector<S>>& taxels) {
+    const auto end = static_cast<std::ptrdiff_t>((std::min)(taxels[0].size(), std::size_t{64}));
+    const auto product = [end](const std::vector<S>& a, const std::vector<S>& b) {
+      return std::inner_product(a.begin(), a.begin() + end, b.begin(), S(0));
+    };
+    S sum = S(0);
+    for (std::size_t j = 0; j < taxels.size(); ++j) {
+      const S own = product(taxels[j], taxels[j]);
+      for (std::size_t k = 0; k < j; ++k) {
+        sum = sum + square(product(taxels[j], taxels[k])) / (own * product(taxels[k], taxels[k]));
       }
     }
-  }
-  /// Over all pairs of the taxels of `products_`.
-  S mean_squared_correlation(int taxels) const {
-    S sum = S(0);
-    for (const S& product : products_) {
-      sum = sum + square(product);
-    }
-    return (sum - S(taxels)) / S(static_cast<double>(taxels) * (taxels - 1));
+    const auto count = static_cast<double>(taxels.size());
+    return sum / S(count * (count - 1) / 2);
   }
   /// From the median window. Independent noise has a squared correlation of 1 / (times - 2) by
   /// chance, and taxels that have the share p of their variance in common add p^2.
@@ -190,7 +181,7 @@ class TaxelNoiseCalibration {
     using std::sqrt;
     std::vector<S> all = shared_;
     std::sort(all.begin(), all.end());
-    const double chance = 1 / (static_cast<double>(times_) - 2);
+    const double chance = 1 / ((std::min)(length(), 64.0) - 2);
     const S squared = (all[all.size() / 2] - S(chance)) / S(1 - chance);
     return S(0) < squared ? S(sqrt(squared)) : S(0);
   }
@@ -216,8 +207,6 @@ class TaxelNoiseCalibration {
   std::vector<S> residuals_;
   std::vector<std::vector<S>> variances_;  // of the windows of each of `now_`
   std::vector<bool> is_bad_;               // in the present window
-  std::size_t times_;                      // of a window, at most 64 of them, for
-  std::vector<S> products_;                // the products of two times over the taxels
   std::vector<S> shared_;                  // squared correlation of each window
   Index in_window_ = 0;                    // samples of the present window
   Index windows_ = 0;

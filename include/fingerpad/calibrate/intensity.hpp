@@ -22,7 +22,6 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/intensity_depth.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/triangle.hpp"
 
 namespace fingerpad {
 inline namespace v1 {

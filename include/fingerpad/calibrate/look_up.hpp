@@ -46,60 +46,43 @@ struct ForceSample {
   int load = 0;  ///< number of the load; leave_one_load_out leaves out its samples together
 };
 
-/// Errors of predictions for samples left out of the calibration.
+/// Sizes of the errors of predictions for samples left out of the calibration.
 template <scalar S = double>
 struct CrossValidation {
-  std::vector<S> errors;  ///< predicted less measured, for each sample; NaN: no prediction
-  int loads = 0;          ///< number of loads left out in turn
-  S mean_abs = not_a_number<S>();
-  S worst = not_a_number<S>();  ///< largest absolute error
+  S mean_abs = not_a_number<S>();  ///< NaN: no prediction
+  S worst = not_a_number<S>();     ///< the largest
 };
 
 /// Leaves out one load after the other, calibrates with the rest, and predicts the samples left
-/// out: model = fit(span of samples); error = error_of(model, sample). O(loads) fits; allocates.
-/// Refuses what the fit refuses.
+/// out: model = fit(span of samples); error = error_of(model, sample), NaN: none. O(loads) fits;
+/// allocates. Refuses what the fit refuses.
 template <scalar S, class Fit, class ErrorOf>
 CrossValidation<S> leave_one_load_out(std::span<const ForceSample<S>> samples,
                                       const Fit& fit,
                                       const ErrorOf& error_of) {
-  CrossValidation<S> result;
   std::set<int> loads;
   for (const ForceSample<S>& s : samples) {
     loads.insert(s.load);
   }
-  result.loads = static_cast<int>(loads.size());
-  result.errors.assign(samples.size(), not_a_number<S>());
+  CrossValidation<S> result;
+  S sum(0), predicted(0);
   for (const int load : loads) {
     std::vector<ForceSample<S>> rest;
     std::copy_if(samples.begin(), samples.end(), std::back_inserter(rest),
                  [load](const ForceSample<S>& s) { return s.load != load; });
     const auto model = fit(std::span<const ForceSample<S>>(rest));
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      result.errors[i] = samples[i].load == load ? error_of(model, samples[i]) : result.errors[i];
+    for (const ForceSample<S>& s : samples) {
+      const S error = s.load == load ? error_of(model, s) : not_a_number<S>();
+      const S size = value(error) < 0 ? -error : error;
+      if (is_finite(size)) {
+        sum = sum + size;
+        predicted = predicted + S(1);
+        result.worst = value(size) <= value(result.worst) ? result.worst : size;
+      }
     }
   }
-  S sum(0), predicted(0);
-  for (const S& error : result.errors) {
-    const S size = value(error) < 0 ? -error : error;
-    if (is_finite(size)) {
-      sum = sum + size;
-      predicted = predicted + S(1);
-      result.worst = value(size) <= value(result.worst) ? result.worst : size;
-    }
-  }
-  result.mean_abs = value(predicted) > 0 ? sum / predicted : result.mean_abs;
+  result.mean_abs = sum / predicted;
   return result;
-}
-
-/// The polynomial that fit_normal_force fits.
-struct FitOptions {
-  int degree = 2;            ///< in [1, 3]
-  bool through_zero = true;  ///< no force without contact; the published curves lack this
-};
-
-/// Says which option has no meaning; "" if all have one.
-inline std::string check(const FitOptions& o) {
-  return check("FitOptions", {{"degree", o.degree, within(1, 3)}});
 }
 
 /// Normal force from area, depth or radius.
@@ -267,18 +250,20 @@ inline constexpr int rising_terms[3][4][4] = {
 }  // namespace detail
 
 /// Normal force from area, depth or radius by a polynomial. One that falls somewhere between 0 and
-/// the largest measure is replaced by one that does not; a force that falls is refused. Uses the
+/// the largest measure is replaced by one that does not; a force that falls is refused. Degree in
+/// [1, 3]. `through_zero`: no force without contact; the published curves lack this. Uses the
 /// samples with a measure > 0 and a normal force. Allocates; O(samples).
 template <scalar S = double>
 NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
-                                   const FitOptions& options = {}) {
+                                   int degree = 2,
+                                   bool through_zero = true) {
   const char* const owner = "fit_normal_force";
-  require(options);
+  require(owner, {{"degree", degree, within(1, 3)}});
   const auto some = detail::usable_samples(
       samples, [](const ForceSample<S>& s) { return is_finite(s.normal_force_n); });
   expects(!some.empty(), owner, "usable samples", 0LL,
           "> 0: with a measure > 0 and a finite normal force");
-  const Index n = static_cast<Index>(some.size()), size = options.degree + 1;
+  const Index n = static_cast<Index>(some.size()), size = degree + 1;
   detail::FitVector<S> t(n), measured(n);  // t: measure over the largest
   for (Index i = 0; i < n; ++i) {
     t(i) = some[static_cast<std::size_t>(i)].measure;
@@ -293,12 +278,12 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
   detail::FitMatrix<S> powers = detail::FitMatrix<S>::Constant(n, size, S(1)), terms(size, size);
   for (Index k = 0; k < size; ++k) {
     for (Index i = 0; i < size; ++i) {
-      terms(i, k) = S(detail::rising_terms[options.degree - 1][k][i]);
+      terms(i, k) = S(detail::rising_terms[degree - 1][k][i]);
     }
     powers.rightCols(size - 1 - k).array().colwise() *= t.array();
   }
   std::vector<Index> used;
-  for (Index k = options.through_zero ? 1 : 0; k < size; ++k) {
+  for (Index k = through_zero ? 1 : 0; k < size; ++k) {
     used.push_back(k);
   }
   detail::LinearFit<S> fit;
@@ -307,7 +292,7 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
     for (const Index k : used) {
       names.push_back(k == 0 ? "the constant" : "measure^" + std::to_string(k));
     }
-    const Index first = options.through_zero ? 0 : 1;
+    const Index first = through_zero ? 0 : 1;
     const Index others = static_cast<Index>(used.size()) - first;
     expects(others > 0, owner, "slope of the force over the measure", S(-1),
             ">= 0: the force falls while the contact grows");
@@ -334,8 +319,8 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
   }
   curve.residual_sd_n = fit.residual_sd;
   result.explained = fit.explained;
-  const bool offset = options.through_zero &&
-                      detail::is_offset<S>(fit.by_constant, fit.left_sq, square(fit.constant),
+  const bool offset =
+      through_zero && detail::is_offset<S>(fit.by_constant, fit.left_sq, square(fit.constant),
                                            measured.cwiseAbs2().maxCoeff());
   const double force = detail::largest(samples, [](const auto& s) { return s.normal_force_n; });
   result.cause = detail::cause_in(fit, detail::unit_mistake(samples, force, 0.05),

@@ -9,7 +9,7 @@
 //
 // Where the mean curvature with negative ones set to 0 (image/curvature.hpp) is below a threshold,
 // there is contact; its edge is then placed where the plain mean is half way between object and
-// free membrane (contact/detail/edge.hpp).
+// free membrane.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,14 +19,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "fingerpad/contact/detail/edge.hpp"
 #include "fingerpad/contact/detail/regions.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 #include "fingerpad/optics/camera.hpp"

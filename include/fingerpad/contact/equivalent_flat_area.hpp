@@ -4,22 +4,13 @@
 // The area of the flat contact that would press as hard as the object. With it a look-up of force
 // (force/look_up.hpp) holds for objects of any shape.
 //
-// Cut the membrane along a closed curve around the contact. Three things act on the piece inside:
-// the fluid's pressure p over the plan area A, the object's force, and along the curve the tension
-// T, whose vertical part is T sin(alpha) with the slope alpha across the curve:
+// The depth map gives the plan area A within a series of curves around the contact, and the
+// integral f of the sum k of the principal curvatures over it. With p the pressure and the mean
+// tension linear in f (docs/force/normal_force.md),
 //
-//   F_z = p A - T_mean f,   f = integral of sin(alpha) ds = integral of k dA            (EA1)
+//   A = S_eq + (a + b f) f,   S_eq = F_z / p,                                            (EA2)
 //
-// where k is the sum of the two principal curvatures (divergence theorem). It holds for every
-// curve, so with S_eq = F_z / p, the area of the plate that would press as hard (eq. 2 of Ito, Kim
-// and Obinata),
-//
-//   A = S_eq + (T_mean / p) f,   T_mean / p = a + b f                                   (EA2)
-//
-// The depth map gives A and f for a series of curves. The mean tension changes slowly from curve to
-// curve and is assumed to be linear in f: S_eq is where a parabola through (f, A) meets f = 0. No
-// curve runs through the contact, so errors of its edge and smoothing there do not matter:
-// smoothing moves curvature but keeps its integral.
+// S_eq is where a parabola through (f, A) meets f = 0.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -326,6 +326,21 @@ constexpr StridedView<T> interleaved_channel(
   return {data + c, rows, cols, row_stride, channels};
 }
 
+/// What became of a frame.
+enum class FrameStatus : std::uint8_t {
+  ok,
+  not_of_this_pad,  ///< the result is unreliable: the sensor unit, lamp or layout is not that of
+                    ///< the free pad, or the object is larger than the camera's view
+  refused,          ///< a grid or the memory given with it has the wrong size: nothing was written
+};
+
+/// "ok", "not of this pad" or "refused".
+constexpr const char* name_of(FrameStatus status) {
+  return status == FrameStatus::ok                ? "ok"
+         : status == FrameStatus::not_of_this_pad ? "not of this pad"
+                                                  : "refused";
+}
+
 /// A pixel of a contact mask. As a number: black, grey and white of an 8-bit image.
 enum class Touch : std::uint8_t { none = 0, unknown = 127, contact = 255 };
 

@@ -23,7 +23,6 @@
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/grid.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
 #include "fingerpad/depth/detail/colour_rows.hpp"
 #include "fingerpad/depth/detail/depth_polynomial.hpp"

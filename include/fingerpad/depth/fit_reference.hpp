@@ -20,9 +20,7 @@
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/depth/pad_light.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
-#include "fingerpad/math/detail/triangle.hpp"
 #include "fingerpad/optics/camera.hpp"
 
 namespace fingerpad {
@@ -198,70 +196,53 @@ PadLight<C> fit_light(std::vector<FreeBlock<C>>& blocks, const C& scale_mm) {
   return light;
 }
 
-/// Shape of the free pad, to detect mistakes.
-struct FreePadShape {
-  double pixels = 0;
-  double deepest_mm = 0;  ///< of the depths up to max_depth_mm
-  double at_zero = 0;     ///< pixels at depth 0
-  double too_deep = 0;    ///< share of the pixels in their middle that lie beyond max_depth_mm
-  double off_axis = 0;  ///< distance of their centroid from the optical axis, in radii of a disc of
-                        ///< as many pixels; 0 if part of the pad is not seen
-};
-
-/// `depth_mm` holds doubles.
+/// Refuses depths that no free pad has, and names the likely mistake. Returns the number of pixels
+/// of the pad; of none the fit tells. `depth_mm` holds doubles.
 template <scalar C, class Depth>
-FreePadShape shape_of_free_pad(const Camera<C>& camera,
-                               double max_depth_mm,
-                               const Depth& depth_mm) {
+double expects_free_pad(const Camera<C>& camera, double max_depth_mm, const Depth& depth_mm) {
+  constexpr const char* owner = "fit_reference";
   const auto center_x_px = static_cast<double>(value(camera.center_x_px));
   const auto center_y_px = static_cast<double>(value(camera.center_y_px));
   const auto aspect = static_cast<double>(value(camera.pixel_aspect));
   const Index rows = depth_mm.rows(), cols = depth_mm.cols();
-  FreePadShape shape;
-  double sum_x = 0, sum_y = 0;
+  double pixels = 0, deepest_mm = 0, at_zero = 0, sum_x = 0, sum_y = 0;
   bool reaches_border = false;
   each_pixel(rows, cols, [&](Index i, Index j) {
     const double l = depth_mm(i, j);
     if (is_finite(l) && l >= 0) {
-      shape.pixels += 1;
-      shape.at_zero += l == 0 ? 1 : 0;
-      shape.deepest_mm = l > max_depth_mm ? shape.deepest_mm : (std::max)(shape.deepest_mm, l);
+      pixels += 1;
+      at_zero += l == 0 ? 1 : 0;
+      deepest_mm = l > max_depth_mm ? deepest_mm : (std::max)(deepest_mm, l);
       sum_x += static_cast<double>(j) - center_x_px;
       sum_y += (static_cast<double>(i) - center_y_px) * aspect;
       reaches_border = reaches_border || i == 0 || j == 0 || i + 1 == rows || j + 1 == cols;
     }
   });
-  const double radius_sq = shape.pixels * aspect / std::numbers::pi;
-  double middle = 0;
+  if (pixels == 0) {
+    return 0;
+  }
+  const double radius_sq = pixels * aspect / std::numbers::pi;  // of a disc of as many pixels
+  double middle = 0, too_deep = 0;
   each_pixel(rows, cols, [&](Index i, Index j) {
-    const double x = static_cast<double>(j) - center_x_px - sum_x / shape.pixels;
-    const double y = (static_cast<double>(i) - center_y_px) * aspect - sum_y / shape.pixels;
+    const double x = static_cast<double>(j) - center_x_px - sum_x / pixels;
+    const double y = (static_cast<double>(i) - center_y_px) * aspect - sum_y / pixels;
     if (depth_mm(i, j) >= 0 && x * x + y * y <= radius_sq / 16) {
       middle += 1;
-      shape.too_deep += depth_mm(i, j) > max_depth_mm ? 1 : 0;
+      too_deep += depth_mm(i, j) > max_depth_mm ? 1 : 0;
     }
   });
-  shape.too_deep = middle > 0 ? shape.too_deep / middle : 0;
-  if (!reaches_border && shape.pixels >= 100) {  // else there may be no pad at all
-    shape.off_axis = std::hypot(sum_x, sum_y) / (shape.pixels * std::sqrt(radius_sq));
-  }
-  return shape;
-}
-
-/// Refuses shapes that no free pad has, and names the likely mistake.
-inline void expects_free_pad(const FreePadShape& shape, double max_depth_mm) {
-  constexpr const char* owner = "fit_reference";
-  if (shape.pixels == 0) {
-    return;  // the fit reports it
-  }
-  expects(shape.too_deep <= 0.5, owner, "share of the pad's middle beyond max_depth_mm",
-          shape.too_deep, "<= 0.5: raise max_depth_mm, or give mm");
-  expects(shape.deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm",
-          shape.deepest_mm, ">= a tenth of max_depth_mm: give mm, not m");
-  expects(shape.at_zero <= 0.1 * shape.pixels, owner, "share of pixels at depth 0",
-          shape.at_zero / shape.pixels, "<= 0.1: depth_mm must be NaN outside of the pad");
-  expects(shape.off_axis <= 0.25, owner, "distance of the pad's center from the axis, in radii",
-          shape.off_axis, "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
+  expects(2 * too_deep <= middle, owner, "share of the pad's middle beyond max_depth_mm",
+          too_deep / middle, "<= 0.5: raise max_depth_mm, or give mm");
+  expects(deepest_mm >= 0.1 * max_depth_mm, owner, "deepest point of depth_mm", deepest_mm,
+          ">= a tenth of max_depth_mm: give mm, not m");
+  expects(at_zero <= 0.1 * pixels, owner, "share of pixels at depth 0", at_zero / pixels,
+          "<= 0.1: depth_mm must be NaN outside of the pad");
+  // the center of a pad that is not seen as a whole is not known
+  const double off_axis = std::hypot(sum_x, sum_y) / (pixels * std::sqrt(radius_sq));
+  expects(off_axis <= 0.25 || reaches_border || pixels < 100, owner,
+          "distance of the pad's center from the axis, in radii", off_axis,
+          "<= 0.25: camera.center_x_px, center_y_px are not those of this image");
+  return pixels;
 }
 
 /// Refuses a light that no pad has. It holds one fluid; lamp and lens may fall to a third toward
@@ -330,8 +311,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   const LazyView plain_depth(depths.rows(), depths.cols(), [&](Index i, Index j) {
     return static_cast<double>(value(static_cast<C>(depths(i, j))));
   });
-  const auto shape = detail::shape_of_free_pad(camera, max_depth_mm, plain_depth);
-  detail::expects_free_pad(shape, max_depth_mm);
+  const double pad_pixels = detail::expects_free_pad(camera, max_depth_mm, plain_depth);
 
   C scale_mm = known != nullptr ? known->kappa.scale_mm : C(1);
   detail::each_pixel(reference.rows, reference.cols, [&](Index i, Index j) {
@@ -340,7 +320,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
       scale_mm = value(scale_mm * scale_mm) < value(rho_sq) ? C(sqrt(rho_sq)) : scale_mm;
     }
   });
-  const Index width = detail::block_width(shape.pixels);
+  const Index width = detail::block_width(pad_pixels);
   auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, width, scale_mm);
   const PadLight<C> light = known != nullptr ? *known : detail::fit_light(blocks, scale_mm);
   if (known != nullptr) {

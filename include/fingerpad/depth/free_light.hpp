@@ -6,15 +6,13 @@
 // press turns the membrane near the rim outward, which looks like a change of colour, so that no
 // light can be told from a frame with contact.
 //
-// One frame of the free pad says it to a thousandth. Three numbers are fitted to means over blocks
-// of the pad: the gains of green and red, and how much higher the pad stands than in the reference
-// (a temperature, a pressure). Two equations hold in each block: that of depth, and that the
-// membrane is as bright as in the reference once the path through the fluid is taken off. Without
-// the second, a change of light near the rim cannot be told from one of the slope.
-//
-// During a press the second equation still tells that the light changes, though not how: from the
-// measured depth follows how bright the membrane should be. A change of red moves the depth, and by
-// it the brightness, by what the fluid absorbs in that length.
+// Three numbers are fitted to means over blocks of the free pad: the gains of green and red, and
+// how much higher the pad stands than in the reference. Two equations hold in each block: that of
+// depth, and that the membrane is as bright as in the reference once the path through the fluid is
+// taken off (docs/depth/depth.md). During a press the second one still tells that the light
+// changes, though not how: from the measured depth follows how bright the membrane should be. A
+// change of red moves the depth, and by it the brightness, by what the fluid absorbs in that
+// length.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,9 +75,7 @@ class FreeLight {
         fingerpad::rows(green) != rows_ || fingerpad::cols(green) != cols_) {
       return std::nullopt;
     }
-    const auto reds = as_view(red);
-    const auto greens = as_view(green);
-    return fitted([&](const Block& b) { return seen(b, reds, greens); });
+    return fitted(as_view(red), as_view(green));
   }
 
   /// Of a frame in the light `gains`, free or pressed, with the depth that was measured in it, both
@@ -87,10 +83,8 @@ class FreeLight {
   /// What grows with the difference from the free depth is no light: the fluid's constants may be
   /// off by a few per cent.
   template <grid Green, grid Depth>
-  Brightness brightness(const Green& green,
-                        const Depth& depth_mm,
-                        const LightGains& gains,
-                        const GreyScale& scale = grey_scale_of<cell_t<Green>>()) const {
+  Brightness brightness(const Green& green, const Depth& depth_mm, const LightGains& gains) const {
+    constexpr GreyScale scale = grey_scale_of<cell_t<Green>>();
     std::array<std::array<double, 2>, 2> a{};
     std::array<double, 2> b{};
     double fades = 0;
@@ -206,8 +200,8 @@ class FreeLight {
 
   /// Gauss-Newton in the logarithms of the gains and the height, with weights that fall with the
   /// residual, so that a spot of dirt or a print that has moved does not count.
-  template <class See>
-  std::optional<FreeLightResult> fitted(const See& see) const {
+  template <class View>
+  std::optional<FreeLightResult> fitted(const View& reds, const View& greens) const {
     double green = 0, red = 0, height = 0;  // what takes the change off, as logarithms
     double scale = 0.05;                    // of the residuals, mm and shares alike
     FreeLightResult result;
@@ -228,7 +222,7 @@ class FreeLight {
         weights += w;
       };
       for (const Block& block : blocks_) {
-        const Seen now = see(block);
+        const Seen now = seen(block, reds, greens);
         if (!(now.green > 0)) {
           continue;
         }

@@ -22,7 +22,6 @@
 #include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 
 namespace fingerpad {

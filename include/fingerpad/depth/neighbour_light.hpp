@@ -25,7 +25,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/quick_math.hpp"
 

@@ -4,12 +4,9 @@
 // Finds the smallest force that holds an object whose weight and friction are unknown. Source:
 // "Pre- Slip Sensing Using Tactile Sensor" (2007), its two experiments:
 //
-//   grasp-optimise-replace  the object hangs between the fingers; the grip is loosened step by step
-//                           until pre-slip is found: this is the smallest force. To check, the
-//                           paper goes on until the object slips as a whole, three to six steps
-//                           later
-//   grasp-lift-replace      the object stands on a surface and is lifted with little force; at
-//                           pre-slip the lift pauses and the grip is tightened
+//   grasp-optimise-replace  the grip is loosened step by step until pre-slip: the smallest force
+//   grasp-lift-replace      the object is lifted with little force; at pre-slip the lift pauses and
+//                           the grip is tightened
 //
 // The caller moves the gripper as commanded, and passes the slip state of the fingers with each
 // sample, from preslip.hpp or elsewhere. While the state is not known the command does not change.

@@ -10,11 +10,10 @@
 //   grasp-lift      centroid(a) != centroid(b) and location(a) != location(b)
 //                   and waves(b) > waves(a)                                  on any finger
 //
-// "If there exist some tactile elements having the same frequency, then pre-slip can be
-// recognized": location and waves are those of any element that vibrates; for grasp-optimise those
-// of a may be on another finger. As printed later, each finger has one vibrating location, that of
-// its strongest vibration. Each pair is compared once (docs/errata.md, E042): the newest sample
-// with those before it.
+// As printed, each finger has one vibrating location, that of its strongest vibration. But "if
+// there exist some tactile elements having the same frequency, then pre-slip can be recognized":
+// the default grasp-optimise takes any element that vibrates, those of a also on another finger.
+// Each pair is compared once (docs/errata.md, E042): the newest sample with those before it.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -120,14 +119,13 @@ enum class PreslipRule : std::uint8_t {
   /// First experiment. Use it when an object hangs between fingers that press alike and the grip is
   /// loosened.
   grasp_optimise,
-  printed_grasp_lift,  ///< by the strongest vibration of each finger alone
-  printed_grasp_optimise,
+  printed_grasp_optimise,  ///< by the strongest vibration of each finger alone
 };
 
 /// "grasp_lift", "grasp_optimise", ...
 constexpr const char* name_of(PreslipRule rule) {
-  constexpr std::array<const char*, 4> names = {"grasp_lift", "grasp_optimise",
-                                                "printed_grasp_lift", "printed_grasp_optimise"};
+  constexpr std::array<const char*, 3> names = {"grasp_lift", "grasp_optimise",
+                                                "printed_grasp_optimise"};
   return names[static_cast<std::size_t>(rule)];
 }
 
@@ -207,27 +205,6 @@ bool grasp_optimise(const Fingers& older,
   return false;
 }
 
-/// The centroid has moved, and a taxel vibrates with more waves than another taxel did, or none
-/// did.
-template <scalar S>
-bool grasp_lift(const FingerSample<S>& older,
-                const FingerSample<S>& later,
-                const PreslipOptions& options) {
-  if (!older.can_tell() || !has_moved(older, later, options)) {
-    return false;
-  }
-  for (const auto& b : later.judged()) {
-    bool has_risen = older.vibration_count == 0;
-    for (const auto& a : older.judged()) {
-      has_risen = has_risen || (a.waves < b.waves && at_another(a, b));
-    }
-    if (has_risen && b.waves > 0 && b.waves >= options.min_waves) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// Another location vibrates, with the same number of waves.
 template <scalar S>
 bool printed_grasp_optimise(const FingerSample<S>& a,
@@ -240,9 +217,7 @@ bool printed_grasp_optimise(const FingerSample<S>& a,
 /// The centroid has moved and another location vibrates, with more waves. An older sample without
 /// vibration has no location, which differs from every location.
 template <scalar S>
-bool printed_grasp_lift(const FingerSample<S>& a,
-                        const FingerSample<S>& b,
-                        const PreslipOptions& options) {
+bool grasp_lift(const FingerSample<S>& a, const FingerSample<S>& b, const PreslipOptions& options) {
   return a.can_tell() && vibrates(b) && has_moved(a, b, options) && a.location != b.location &&
          b.waves > a.waves && b.waves >= options.min_waves;
 }
@@ -254,14 +229,13 @@ bool printed_grasp_lift(const FingerSample<S>& a,
 template <class Fingers>
 bool is_preslip(const Fingers& older, const Fingers& later, const PreslipOptions& options = {}) {
   const PreslipRule rule = options.rule;
-  const bool on_any = rule == PreslipRule::grasp_lift || rule == PreslipRule::printed_grasp_lift;
+  const bool on_any = rule == PreslipRule::grasp_lift;
   for (std::size_t f = 0; f < later.size(); ++f) {
     const auto &a = older[f], &b = later[f];
-    const bool holds = rule == PreslipRule::grasp_lift ? detail::grasp_lift(a, b, options)
+    const bool holds = on_any ? detail::grasp_lift(a, b, options)
                        : rule == PreslipRule::grasp_optimise
                            ? detail::grasp_optimise(older, b, f, options)
-                       : on_any ? detail::printed_grasp_lift(a, b, options)
-                                : detail::printed_grasp_optimise(a, b, options);
+                           : detail::printed_grasp_optimise(a, b, options);
     if (holds == on_any) {
       return on_any;
     }

@@ -9,18 +9,11 @@
 // pad. The tension T follows from the stretch against the stress-free membrane
 // (membrane/rubber.hpp).
 //
-// In discrete form, the divergence at a dot is the pull of the triangles around it, the derivative
-// of their stored energy. Each cell of four dots is divided by either of its diagonals, and its
-// energy is the mean of both. Rigid motions change nothing, and the sum of the loads over a patch
-// equals the pull across its border plus the pressure on it, to rounding: the mesh blurs a load by
-// about one pitch but loses none of it. For this sum the places of the dots inside do not matter,
-// so a dot that was not found is as good there when placed between its neighbours.
-//
-// If mu t (shear modulus times thickness of the stress-free membrane) is not given, it is computed
-// from the free part of each frame, where the membrane alone balances the pressure. There the mean
-// of the normal loads is 0. With f the pull on a dot for mu t = 1 N/mm, A its area and n its
-// normal, this gives sum p = -mu t sum f . n / A. Least squares of mu t f + p A n would be biased:
-// noise of the dots adds to f . f, which makes mu t too small, but does not affect f . n.
+// docs/force/traction.md has the equations. The divergence at a dot is the pull of the triangles
+// around it, the derivative of their stored energy; each cell of four dots is divided by either of
+// its diagonals, and its energy is the mean of both. If mu t (shear modulus times thickness of the
+// stress-free membrane) is not given, the free part of each frame gives it, where the mean of the
+// normal loads is 0.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -25,7 +25,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
 #include "fingerpad/membrane/annulus.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 #include "fingerpad/optics/camera.hpp"

@@ -23,7 +23,7 @@
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/status.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {

@@ -24,7 +24,6 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/detail/dot_frame.hpp"
 #include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/rigid_fit.hpp"

@@ -22,10 +22,8 @@
 // inclination of the object is read: the options of these names. Where lines do not end level, the
 // error of f_h propagates from line to line: over tilted or curved objects the result is far off or
 // diverges.
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -63,30 +61,16 @@ std::string check(const SegmentEquilibriumOptions<S>& o) {
                            {"inside_mm", o.inside_mm, not_negative}});
 }
 
-enum class SegmentStatus : std::uint8_t {
-  ok,
-  no_contact,  ///< the membrane touches nothing: force and moment are 0
-  no_shape,    ///< a line runs into a hole and does not leave it
-  bad_input,   ///< a side dot is missing or not above the base, or the pressure is not above 0
-  not_solved,  ///< no line ends level, or the iteration diverges
-  refused,     ///< the grid of side dots has another size
-};
-
-/// "ok", "no contact", ...
-constexpr const char* name_of(SegmentStatus status) {
-  constexpr std::array<const char*, 6> names = {"ok",        "no contact", "no shape",
-                                                "bad input", "not solved", "refused"};
-  return names[static_cast<std::size_t>(status)];
-}
-
-/// What the object exerts on the pad, the moment about the center of the base; NaN unless ok().
+/// What the object exerts on the pad, the moment about the center of the base; 0 where the membrane
+/// touches nothing. NaN where the grid of side dots has another size, a side dot is missing or not
+/// above the base, the pressure is not above 0, a line runs into a hole and does not leave it, no
+/// line ends level, or the iteration diverges.
 template <scalar S = double>
 struct [[nodiscard]] SegmentResult {
-  SegmentStatus status = SegmentStatus::refused;
   Point3<S> force_n = detail::missing_point<S>();
   Point3<S> moment_n_mm = detail::missing_point<S>();
 
-  bool ok() const { return status == SegmentStatus::ok || status == SegmentStatus::no_contact; }
+  bool ok() const { return is_finite(force_n) && is_finite(moment_n_mm); }
 };
 
 /// One object per thread. A frame allocates nothing, and takes O(lines contours passes) time.
@@ -132,13 +116,9 @@ class SegmentEquilibrium {
   template <class Shape, spatial_dot_grid Dots>
   SegmentResult<S> operator()(const Shape& shape, const Dots& side_dots_mm, const S& pressure_mpa) {
     const auto dots = as_view(side_dots_mm);
-    SegmentResult<S> result;
-    if (dots.rows() != 1 || dots.cols() != n_) {
-      return result;
-    }
-    result.status = SegmentStatus::bad_input;
-    bool good = value(pressure_mpa) > 0 && is_plausible(pressure_mpa);
-    for (Index i = 0; i < n_; ++i) {
+    bool good = dots.rows() == 1 && dots.cols() == n_ && value(pressure_mpa) > 0 &&
+                is_plausible(pressure_mpa);
+    for (Index i = 0; good && i < n_; ++i) {
       const auto a = detail::spatial_dot<S>(dots(0, i)),
                  b = detail::spatial_dot<S>(dots(0, next(i)));
       // the direction of the pull on M(i, 1): mean of those on both sides
@@ -146,17 +126,20 @@ class SegmentEquilibrium {
       good = good && is_plausible(a) && value(pull_[index(i)].z) > 0;
     }
     if (!good) {
-      return result;
+      return {};
     }
-    result.status = draw_lines(shape);
-    if (result.status == SegmentStatus::no_contact) {
-      result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
-    } else if (result.status == SegmentStatus::ok) {
-      measure_segments();
-      result.status =
-          iterate(pressure_mpa) ? add_up(pressure_mpa, result) : SegmentStatus::not_solved;
+    const Point2<S> middle = middle_of_contact(shape);
+    if (!is_finite(middle)) {
+      const Point3<S> none = {S(0), S(0), S(0)};
+      return {none, none};
     }
-    return result;
+    for (Index i = 0; i < n_; ++i) {
+      if (!draw_line(shape, middle, i)) {
+        return {};
+      }
+    }
+    measure_segments();
+    return iterate(pressure_mpa) ? add_up(pressure_mpa) : SegmentResult<S>();
   }
 
  private:
@@ -173,8 +156,9 @@ class SegmentEquilibrium {
 
   // III.C: the segments
 
+  /// NaN without contact.
   template <class Shape>
-  SegmentStatus draw_lines(const Shape& shape) {
+  Point2<S> middle_of_contact(const Shape& shape) const {
     constexpr int places = 64;
     Point2<S> middle = {S(0), S(0)};
     int touching = 0;
@@ -188,16 +172,7 @@ class SegmentEquilibrium {
         ++touching;
       }
     }
-    if (touching == 0) {
-      return SegmentStatus::no_contact;
-    }
-    middle = middle / S(touching);
-    for (Index i = 0; i < n_; ++i) {
-      if (!draw_line(shape, middle, i)) {
-        return SegmentStatus::no_shape;
-      }
-    }
-    return SegmentStatus::ok;
+    return middle / S(touching);
   }
 
   /// Follows the gradient from border point i, cutting the line at each contour. Where the shape is
@@ -383,7 +358,7 @@ class SegmentEquilibrium {
   }
 
   /// Eqs. 3 to 5: the vertical part of each pull is that of f_v, its direction that of the dots.
-  SegmentStatus add_up(const S& p, SegmentResult<S>& result) const {
+  SegmentResult<S> add_up(const S& p) const {
     S all = S(0);
     for (const Point3<S>& area : area_) {
       all += p * area.z;
@@ -392,19 +367,15 @@ class SegmentEquilibrium {
     for (Index i = 0; i < n_; ++i) {
       const S load = f_v_[at(i, 0)] * around_[at(i, 0)].normal.z;
       if (!(load < all && -load < all)) {  // a single line cannot carry the load of all
-        return SegmentStatus::not_solved;
+        return {};
       }
       const Point3<S> pull = load / pull_[index(i)].z * pull_[index(i)];
       force += pull;
       moment += cross((border_[index(i)] + border_[index(next(i))]) / S(2), pull);
     }
     force.z = force.z - p * S(std::numbers::pi) * o_.base_radius_mm * o_.base_radius_mm;
-    if (!is_plausible(force) || !is_plausible(moment)) {
-      return SegmentStatus::not_solved;
-    }
-    result.force_n = force;
-    result.moment_n_mm = moment;
-    return SegmentStatus::ok;
+    return is_plausible(force) && is_plausible(moment) ? SegmentResult<S>{force, moment}
+                                                       : SegmentResult<S>();
   }
 
   SegmentEquilibriumOptions<S> o_;

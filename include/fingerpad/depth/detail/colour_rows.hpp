@@ -5,14 +5,10 @@
 // lies in the pad and both its channels lie strictly between the limits of the grey scale; a mean
 // over no such pixel is NaN.
 //
-// One grey level of noise in both channels is 0.7 mm of depth in a single pixel, so several hundred
-// pixels must be averaged. A mean of colours over a curved membrane is biased by curvature times
-// window^2 / 24 per axis, and near the rim, where the window is cut, also by slope. Therefore not
-// the colours are averaged but F at the free pad's depth l0,
+// Not the colours are averaged but F at the free pad's depth l0 (docs/depth/depth.md, averaging),
 //   r = green exp(delta k l0) - kappa red + g W(l0),
-// which is 0 where the membrane has not moved, over two concentric windows: a mean(inner) - b
-// mean(outer), with a - b = 1 and second moments that cancel, is exact for a quadratic r where no
-// window is cut.
+// over two concentric windows: a mean(inner) - b mean(outer), with a - b = 1 and second moments
+// that cancel, is exact for a quadratic r where no window is cut.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,13 +24,64 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/depth/absorption.hpp"
 #include "fingerpad/depth/depth_reference.hpp"
-#include "fingerpad/image/detail/interleaved.hpp"
 #include "fingerpad/image/detail/lanes.hpp"
 #include "fingerpad/image/detail/window_means.hpp"
 
 namespace fingerpad {
 inline namespace v1 {
 namespace detail {
+
+#if defined(FINGERPAD_HAS_VECTORS)
+using Bytes16 = lanes<std::uint8_t, 16>;
+
+/// Interleaves the low (or high) eight bytes of a with the low (or high) eight of b.
+[[gnu::always_inline]] inline Bytes16 mix_low(Bytes16 a, Bytes16 b) {
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+}
+[[gnu::always_inline]] inline Bytes16 mix_high(Bytes16 a, Bytes16 b) {
+  return __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15,
+                                 31);
+}
+[[gnu::always_inline]] inline Bytes16 swap_halves(Bytes16 a) {
+  using Words = lanes<std::uint64_t, 2>;
+  return Bytes16(__builtin_shufflevector(Words(a), Words(a), 1, 0));
+}
+
+/// Interleaves the first and the second half of all bytes.
+[[gnu::always_inline]] inline void mix(std::array<Bytes16, 3>& v) {
+  v = {mix_low(v[0], swap_halves(v[1])), mix_high(v[0], swap_halves(v[2])),
+       mix_low(v[1], swap_halves(v[2]))};
+}
+
+/// Two channels of a row of pixels of three bytes (BGR): red[i] = from[3 i + red_offset], and
+/// likewise green, for as many i < n as whole vectors hold; returns how many. Interleaving the
+/// halves of 16 pixels four times brings byte 3 i + c to i + 16 c.
+inline Index load_interleaved(const std::uint8_t* from,
+                              Index n,
+                              Index red_offset,
+                              Index green_offset,
+                              std::uint8_t* red,
+                              std::uint8_t* green) {
+  Index i = 0;
+  for (; i + 16 <= n; i += 16) {
+    std::array<Bytes16, 3> planes;
+    for (std::size_t c = 0; c < 3; ++c) {
+      planes[c] = load<Bytes16>(from + 3 * i + 16 * Index(c));
+    }
+    for (int k = 0; k < 4; ++k) {
+      mix(planes);
+    }
+    store(red + i, planes[std::size_t(red_offset)]);
+    store(green + i, planes[std::size_t(green_offset)]);
+  }
+  return i;
+}
+#else
+inline Index load_interleaved(
+    const std::uint8_t*, Index, Index, Index, std::uint8_t*, std::uint8_t*) {
+  return 0;
+}
+#endif
 
 /// Reads columns [col, col + n) of a row of both channels.
 template <class Red, class Green, class Pixel>
@@ -56,15 +103,12 @@ void load_pixels(const Red& red,
       return;
     }
     if constexpr (std::same_as<Pixel, std::uint8_t>) {
-      if (n > 0 && step == green.col_stride() && r - g < step && g - r < step) {
+      if (n > 0 && step == 3 && green.col_stride() == 3 && r - g < 3 && g - r < 3) {
         // Two channels of one image. The last pixel of a row is left to the loop below: which of
         // its channels comes first is not known, and a vector may reach past it.
         const Pixel* first = (std::min)(r, g);
         const Index whole = col + n < red.cols() ? n : n - 1;
-        done = step == 3 ? load_interleaved<3>(first, whole, r - first, g - first, to_red, to_green)
-               : step == 4
-                   ? load_interleaved<4>(first, whole, r - first, g - first, to_red, to_green)
-                   : 0;
+        done = load_interleaved(first, whole, r - first, g - first, to_red, to_green);
       }
     }
   }

@@ -3,7 +3,7 @@
 #pragma once
 // Whether the whole pattern has been labelled otherwise than before, for example shifted by a
 // pitch.
-#include "fingerpad/core/detail/dot_frame.hpp"
+#include "fingerpad/core/dots.hpp"
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
