@@ -148,8 +148,13 @@ TEST_CASE("calibration of depth: light that varies over the plate") {
     samples.push_back(
         sensor.sample(90 + 12 * (k / 7 % 25), 170 + 50 * (k % 7), 0.5 + 2.3 * (k % 6)));
   }
+  for (std::size_t k = 0; k < samples.size(); ++k) {  // red is blurred more than green
+    samples[k].green_laplacian = 9 * std::sin(double(k));
+    samples[k].colour.green -= 0.125 * samples[k].green_laplacian;
+  }
   const auto fit = fit_absorption<2, double>(samples);
   CHECK(fit.ok());
+  CHECK(fit.red_blur == Approx(0.125).epsilon(1e-6));
   CHECK(fit.fluid.c_red_per_mm == Approx(0.029).epsilon(1e-8));
   for (const auto& s : samples) {
     CHECK(fit.light.scattering.at(s.plate_mm) == Approx(sensor.g_at(s.plate_mm)).epsilon(1e-8));
@@ -208,8 +213,7 @@ TEST_CASE("calibration of depth: the fit is where no parameter lowers the residu
     double sum = 0;
     for (const auto& s : samples) {
       const double path = s.ray.path_factor * s.depth_mm;
-      const double delta = best[1];  // with the weights of the fit
-      const double noise_sq = std::exp(2 * delta * path) + best[2] * best[2];
+      const double noise_sq = std::exp(2 * p[1] * path) + p[2] * p[2];
       const Absorption<double> fluid{p[0], p[0] + p[1], p[2]};
       const double f = depth_equation(fluid, s.ray, p[3], s.colour, s.depth_mm).first;
       sum += f * f / noise_sq;
@@ -256,6 +260,24 @@ TEST_CASE("calibration of depth: errors compensate to microns of depth, as predi
   }
   CAPTURE(kappa_sq, kappa_predicted_sq);
   CHECK(std::sqrt(kappa_sq / kappa_predicted_sq) == Approx(1).margin(0.3));
+}
+
+TEST_CASE("calibration of depth: noise of the colours makes no fluid out of another") {
+  constexpr int trials = 40;
+  std::mt19937 random(7);
+  double sum = 0, sum_sq = 0;
+  for (int t = 0; t < trials; ++t) {
+    Samples samples = samples_on_axis(Sensor{}, 400);
+    add_noise(samples, 0.03, random);
+    const auto fluid = fit_absorption<0, double>(samples).fluid;
+    const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
+    sum += delta / trials;
+    sum_sq += delta * delta / trials;
+  }
+  const double scatter = std::sqrt(sum_sq - sum * sum);
+  CAPTURE(sum, scatter);
+  CHECK(scatter < 0.0015);
+  CHECK(std::abs(sum - 0.0046) < 3 * scatter / std::sqrt(trials));
 }
 
 TEST_CASE("calibration of depth: covariance against Monte Carlo where the noise is small") {
@@ -338,7 +360,7 @@ TEST_CASE("calibration of depth: degenerate samples are refused, saying what is 
     std::swap(s.colour.red, s.colour.green);
   }
   CHECK(fit(swapped) != "accepted");
-  const auto at_one_place = at({0.5, 2, 3, 4, 5, 6, 8, 10});
+  const auto at_one_place = at({0.5, 2, 3, 4, 5, 6, 7, 8, 10});
   CHECK(refusal([&] {
           (void)fit_absorption<1, double>(at_one_place);
         }).find("differ at every place") != std::string::npos);

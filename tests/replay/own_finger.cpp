@@ -54,8 +54,12 @@ double touch_mm(double rho_mm) {
   return highest - ball_mm;
 }
 
-/// 16-bit picture of a membrane at these depths; the noise is that of the mean of 16 frames.
-cv::Mat picture(const DepthMap& depth_mm, test::Random& random, double noise = 0.25) {
+/// 16-bit picture of a membrane at these depths; the noise is that of the mean of 16 frames. The
+/// plate of a pad with dots, 3 mm apart, may reflect a spot of light.
+cv::Mat picture(const DepthMap& depth_mm,
+                test::Random& random,
+                double noise = 0.25,
+                double glare = 0) {
   cv::Mat_<cv::Vec3w> image(depth_mm.size());
   for (int i = 0; i < image.rows; ++i) {
     for (int j = 0; j < image.cols; ++j) {
@@ -63,12 +67,15 @@ cv::Mat picture(const DepthMap& depth_mm, test::Random& random, double noise = 0
       const auto at = point_at(camera, double(i), double(j), 0.0);
       const double x = at.x / 20, y = at.y / 20;
       const double spot = std::exp(-((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2)) / 0.5);
+      const double off = std::hypot(std::remainder(at.x, 3), std::remainder(at.y, 3));
+      const double dot = glare > 0 ? 1 - 0.5 / (1 + std::exp((off - 0.4) / 0.1)) : 1;
       const double lamp = 1 + 0.08 * x - 0.06 * y + 0.06 * spot;
       const auto light = ray_at_pixel(camera, double(i), double(j));
-      const auto c = std::isfinite(l) ? colour_at_depth(fluid, light, 180.0, 0.05, l)
+      const auto c = std::isfinite(l) ? colour_at_depth(fluid, light, 180 * dot, 0.05, l)
                                       : fingerpad::Colour<double>{5, 5};
+      const double more = glare * std::exp(-2 * ((at.x - 4) * (at.x - 4) + at.y * at.y));
       const auto stored = [&](double level) {
-        return cv::saturate_cast<ushort>(256 * (level + noise * random.normal()));
+        return cv::saturate_cast<ushort>(256 * (level + more + noise * random.normal()));
       };
       image(i, j) = {stored(5), stored(c.green * lamp), stored(c.red * lamp / (1 + 0.02 * x))};
     }
@@ -89,12 +96,12 @@ DepthMap pressed(const DepthMap& free_mm, const calibrate::Sphere& ball) {
 }
 
 /// Writes what a person records; one press may lie `aside_mm` from where it is written down.
-void record(const fs::path& folder, double aside_mm) {
+void record(const fs::path& folder, double aside_mm, double glare = 0) {
   test::Random random(3);
   fs::create_directories(folder / "free");
   fs::create_directories(folder / "frames");
   const DepthMap free_mm = calibrate::depth_of_shape(camera, {size_px, size_px}, true_meridian());
-  replay::write_png(folder / "reference.png", picture(free_mm, random));
+  replay::write_png(folder / "reference.png", picture(free_mm, random, 0.25, glare));
   std::ofstream touches(folder / "touches.csv");
   touches << "x_mm,y_mm,z_mm\n0,0," << touch_mm(0) + 0.01 * random.normal() << "\n";
   for (int k = 0; k < 24; ++k) {
@@ -110,7 +117,8 @@ void record(const fs::path& folder, double aside_mm) {
   for (const auto& [x, y, z, radius] : places) {
     const double moved = frame == 2 ? aside_mm : 0;
     const auto depth = pressed(free_mm, {{x + moved, y, z + radius}, radius});
-    replay::write_png(folder / "frames" / (std::to_string(frame) + ".png"), picture(depth, random));
+    replay::write_png(folder / "frames" / (std::to_string(frame) + ".png"),
+                      picture(depth, random, 0.25, glare));
     presses << frame++ << "," << x << "," << y << "," << z << "," << radius << "\n";
   }
   std::ofstream(folder / "sensor.json")
@@ -230,6 +238,16 @@ TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
   const auto report = calibrated(scratch.path());
   CHECK(report.verdict == calibrate::Verdict::doubtful);
   CHECK(report.because.find("press 2 is not where") != std::string::npos);
+}
+
+TEST_CASE("a finger of one's own: glare is left out, and no press is blamed", "[own]") {
+  const test::ScratchFolder scratch;
+  record(scratch.path(), 0, 40);
+  const auto report = calibrated(scratch.path());
+  INFO(report.because);
+  CHECK(report.verdict == calibrate::Verdict::good);
+  const auto found = replay::read_sensor(scratch.path() / "sensor.json").absorption;
+  CHECK(found.c_red_per_mm == Approx(fluid.c_red_per_mm).epsilon(0.03));
 }
 
 TEST_CASE("a finger of one's own: the target may be cut by the picture", "[own]") {

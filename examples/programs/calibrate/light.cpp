@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "calibrate/calibrations.hpp"
 #include "calibrate/recordings.hpp"
 #include "common/failure.hpp"
 #include "common/images.hpp"
+#include "common/median.hpp"
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/contact.hpp"
 #include "fingerpad/calibrate/depth.hpp"
@@ -95,6 +97,8 @@ void add_blocks(const replay::Sensor& sensor,
   const int width = (std::max)(8, picture.cols / 53);
   const double most_mm = 0.97 * sensor.pad.base_radius_mm;
   const cv::Mat_<cv::Vec3f> grey = in_grey_levels(picture).reshape(3);
+  cv::Mat curved;
+  cv::Laplacian(grey, curved, CV_32F);
   for (int i = 0; i + width <= grey.rows; i += width) {
     for (int j = 0; j + width <= grey.cols; j += width) {
       const cv::Rect block(j, i, width, width);
@@ -110,6 +114,7 @@ void add_blocks(const replay::Sensor& sensor,
       if (depth >= 0 && brightest < 250 && colour[1] > 0 && colour[2] > 0) {
         samples.all.push_back(
             fingerpad::depth_sample(sensor.camera, row, col, depth, {colour[2], colour[1]}));
+        samples.all.back().green_laplacian = cv::mean(curved(block))[1];
       }
     }
   }
@@ -129,6 +134,39 @@ Samples samples_of(const KnownFrames& known) {
         "correct the places in presses.csv");
   }
   return samples;
+}
+
+using Fit = fingerpad::AbsorptionFit<double, 6>;
+
+/// Takes the places where the free pad errs by more than six sd of the others (glare, dirt, a
+/// scratch) out of all pictures. False if there are none.
+bool leave_out_spots(const Fit& fit, Samples& samples) {
+  std::vector<double> error_mm;
+  for (std::size_t k = 0; k < samples.end.front(); ++k) {
+    error_mm.push_back(std::abs(fit.error_mm(samples.all[k])));
+  }
+  const double limit_mm = 6 * 1.4826 * replay::median_of(error_mm);
+  std::vector<fingerpad::Point2<double>> spots;
+  for (std::size_t k = 0; k < error_mm.size(); ++k) {
+    if (error_mm[k] > limit_mm) {
+      spots.push_back(samples.all[k].plate_mm);
+    }
+  }
+  Samples kept;
+  std::size_t k = 0;
+  for (const std::size_t end : samples.end) {
+    for (; k < end; ++k) {
+      const auto lies_here = [&](const auto& at) {
+        return squared_norm(at - samples.all[k].plate_mm) == 0;
+      };
+      if (std::none_of(spots.begin(), spots.end(), lies_here)) {
+        kept.all.push_back(samples.all[k]);
+      }
+    }
+    kept.end.push_back(kept.all.size());
+  }
+  samples = std::move(kept);
+  return !spots.empty();
 }
 
 /// Names the press that is not where presses.csv says: its depths are off on average, or scatter
@@ -218,8 +256,12 @@ double depth_noise_mm(const std::vector<DepthMap>& depths_mm,
 
 Outcome absorption(const Path& recording, const Path& sensor_file) {
   const KnownFrames known = read_known(recording, sensor_file, {"camera", "pad", "reference"});
-  const Samples samples = samples_of(known);
-  const auto fit = fingerpad::fit_absorption<6>(std::span<const Sample>(samples.all));
+  Samples samples = samples_of(known);
+  const auto seen = static_cast<double>(samples.all.size());
+  Fit fit = fingerpad::fit_absorption<6>(std::span<const Sample>(samples.all));
+  for (int round = 0; round < 5 && leave_out_spots(fit, samples); ++round) {
+    fit = fingerpad::fit_absorption<6>(std::span<const Sample>(samples.all));
+  }
   const auto deepest =
       *std::max_element(samples.all.begin(), samples.all.end(),
                         [](const Sample& a, const Sample& b) { return a.depth_mm < b.depth_mm; });
@@ -235,11 +277,14 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
   const auto& fluid = fit.fluid;
   const double delta = fluid.c_green_per_mm - fluid.c_red_per_mm;
   Report report{.what = "absorption", .residual = left_mm, .residual_unit = "mm (depth)"};
-  report.parameters = {{"c_red_per_mm", fluid.c_red_per_mm, sd(0)},
-                       {"c_green_less_c_red_per_mm", delta, sd(1)},
-                       {"kappa", fluid.kappa, sd(2)},
-                       {"depth_sd_at_deepest_mm", depth_sd},
-                       {"explained_by_depth", fit.explained}};
+  report.parameters = {
+      {"c_red_per_mm", fluid.c_red_per_mm, sd(0)},
+      {"c_green_less_c_red_per_mm", delta, sd(1)},
+      {"kappa", fluid.kappa, sd(2)},
+      {"red_blur", fit.red_blur, sd(fit.parameters - 1)},
+      {"share_with_glare_or_dirt", 1 - static_cast<double>(samples.all.size()) / seen},
+      {"depth_sd_at_deepest_mm", depth_sd},
+      {"explained_by_depth", fit.explained}};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& row = fit.covariance[i];
     report.covariance.push_back({row[0], row[1], row[2]});

@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/detail/vectors.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/depth/absorption.hpp"
@@ -40,10 +42,11 @@ inline namespace v1 {
 /// samples, too.
 template <scalar S = double>
 struct DepthSample {
-  Ray<S> ray;          ///< of the pixel
-  Point2<S> plate_mm;  ///< where its ray meets the plate, from the axis
-  S depth_mm;          ///< l along the ray, >= 0
-  Colour<S> colour;    ///< grey levels, > 0
+  Ray<S> ray;                ///< of the pixel
+  Point2<S> plate_mm;        ///< where its ray meets the plate, from the axis
+  S depth_mm;                ///< l along the ray, >= 0
+  Colour<S> colour;          ///< grey levels, > 0
+  S green_laplacian = S(0);  ///< mean of the pixels' 4-neighbour Laplacian, grey levels
 };
 
 template <scalar S>
@@ -53,7 +56,8 @@ std::string check(const DepthSample<S>& s) {
                                {"plate_mm.y", s.plate_mm.y, finite_number},
                                {"depth_mm", s.depth_mm, not_negative},
                                {"colour.red", s.colour.red, positive},
-                               {"colour.green", s.colour.green, positive}});
+                               {"colour.green", s.colour.green, positive},
+                               {"green_laplacian", s.green_laplacian, finite_number}});
 }
 
 /// The sample of pixel (row, col).
@@ -67,18 +71,22 @@ DepthSample<S> depth_sample(const Camera<S>& camera,
   return {ray_at_pixel(camera, row, col), {at.x, at.y}, depth_mm, colour};
 }
 
-/// The fluid, the light and their uncertainty. Parameters are in the order c_red, delta, and the
-/// coefficients of kappa and of g.
+/// The fluid, the light and their uncertainty. Parameters are in the order c_red, delta, the
+/// coefficients of kappa and of g and, unless Degree is 0, red_blur.
 template <scalar S = double, int Degree = 0>
 struct [[nodiscard]] AbsorptionFit {
   static constexpr std::size_t kappa_terms = decltype(PadLight<S, Degree>::kappa)::terms;
   static constexpr std::size_t linear =
-      kappa_terms + decltype(PadLight<S, Degree>::scattering)::terms;
+      kappa_terms + decltype(PadLight<S, Degree>::scattering)::terms + (Degree > 0 ? 1 : 0);
   static constexpr std::size_t parameters = 2 + linear;
 
   const char* cause = cause::not_converged;  ///< likely mistake
   Absorption<S> fluid = {};                  ///< with kappa on the axis
   PadLight<S, Degree> light = {};
+  /// By how much the pictures blur red more than green: red has red_blur times green_laplacian. A
+  /// mosaic that was interpolated bilinearly has 1/8. Without it, the weaker contrast of dots in
+  /// red would pass for a smaller delta.
+  S red_blur = S(0);
   /// NaN with as many samples as parameters.
   std::array<std::array<S, parameters>, parameters> covariance =
       detail::zero_matrix<S, parameters>();
@@ -95,8 +103,9 @@ struct [[nodiscard]] AbsorptionFit {
   S error_mm(const DepthSample<S>& s) const {
     Absorption<S> here = fluid;
     here.kappa = light.kappa.at(s.plate_mm);
+    const Colour<S> sharp = {s.colour.red, s.colour.green + red_blur * s.green_laplacian};
     const auto [f, slope] =
-        depth_equation(here, s.ray, light.scattering.at(s.plate_mm), s.colour, s.depth_mm);
+        depth_equation(here, s.ray, light.scattering.at(s.plate_mm), sharp, s.depth_mm);
     return -f / slope;
   }
 };
@@ -136,7 +145,8 @@ struct AbsorptionPoint {
     using Light = PadLight<S, Degree>;
     const S path = s.ray.path_factor * s.depth_mm;
     const S w = flat ? S(1) : scattered_light(s.depth_mm, c_red, s.ray);
-    const S membrane = weight * s.colour.green * (flat ? S(1) : exp(delta * path));
+    const S fade = weight * (flat ? S(1) : exp(delta * path));
+    const S membrane = fade * s.colour.green;
     const S x = s.plate_mm.x / scale_mm, y = s.plate_mm.y / scale_mm;
     S g = S(0);
     for (const S& m : decltype(Light::kappa)::monomials(x, y)) {
@@ -147,9 +157,13 @@ struct AbsorptionPoint {
       rows.push_back(weight * m * w);
       g += weight * m * linear[k++];
     }
+    if (Degree > 0) {
+      rows.push_back(fade * s.green_laplacian);
+    }
     if (!flat) {
       rows.push_back(g * scattered_light_per_absorption(s.depth_mm, c_red, s.ray));
-      rows.push_back(membrane * path);
+      const S blur = Degree > 0 ? linear.back() * s.green_laplacian : S(0);
+      rows.push_back((membrane + fade * blur) * path);
     }
     rows.push_back(membrane);
   }
@@ -168,17 +182,37 @@ class AbsorptionProblem {
   static constexpr std::size_t linear = Point::Fit::linear;
 
   AbsorptionProblem(std::span<const DepthSample<S>> samples, const S& scale_mm)
-      : samples_(samples), scale_mm_(scale_mm), weights_(samples.size(), S(1)) {}
+      : seen_(samples),
+        samples_(samples.begin(), samples.end()),
+        scale_mm_(scale_mm),
+        weights_(samples.size(), S(1)),
+        left_(samples.size(), S(0)) {}
 
   /// Divides each equation by the noise of F there, sqrt(e^{2 delta k l} + kappa^2) times the noise
-  /// of a colour. It is constant to a few per cent over the depths of a pad.
+  /// of a colour, and takes the derivatives of F at the nearest colours for which it is 0. Noisy
+  /// colours would make delta and kappa too small (errors in variables).
   void weigh(const Point& p) {
+    using std::abs;
     using std::exp;
     using std::sqrt;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const DepthSample<S>& s = samples_[i];
-      const S path = s.ray.path_factor * s.depth_mm;
-      weights_[i] = S(1) / sqrt(exp(S(2) * p.delta * path) + square(p.linear[0]));
+    std::vector<double> noise(seen_.size());
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const DepthSample<S>& s = seen_[i];
+      weights_[i] =
+          S(1) / sqrt(exp(S(2) * p.delta * s.ray.path_factor * s.depth_mm) + square(p.linear[0]));
+      std::vector<S> by;
+      p.append(s, scale_mm_, S(1), by);
+      left_[i] = std::inner_product(p.linear.begin(), p.linear.end(), by.begin(), by.back());
+      noise[i] = static_cast<double>(abs(weights_[i] * left_[i]));
+    }
+    const S limit = S(6 * median(noise));  // what lies beyond is no noise
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const DepthSample<S>& s = seen_[i];
+      left_[i] = abs(weights_[i] * left_[i]) > limit ? S(0) : left_[i];
+      const S share = left_[i] * square(weights_[i]);
+      samples_[i].colour.red = s.colour.red + p.linear[0] * share;
+      samples_[i].colour.green =
+          s.colour.green - exp(p.delta * s.ray.path_factor * s.depth_mm) * share;
     }
   }
 
@@ -191,6 +225,11 @@ class AbsorptionProblem {
     rows.reserve(samples_.size() * (linear + 3));
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       p.append(samples_[i], scale_mm_, weights_[i], rows);
+      rows.back() += weights_[i] * left_[i];
+    }
+    if (Degree > 0) {  // red_blur is 0 +- 1000, should no sample have a Laplacian
+      rows.resize(rows.size() + linear + 3, S(0));
+      rows[rows.size() - 4] = S(1) / S(1000);
     }
     p.triangle = Triangle<S>(std::move(rows), linear + 3);
     const std::vector<S> x = p.triangle.solve(linear, linear + 2);
@@ -209,7 +248,7 @@ class AbsorptionProblem {
   S explained_by_depth(const Point& p) const {
     std::vector<S> rows;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      p.append(samples_[i], scale_mm_, weights_[i], rows, true);
+      p.append(seen_[i], scale_mm_, weights_[i], rows, true);
     }
     const S without_sq = square(Triangle<S>(std::move(rows), linear + 1)(linear, linear));
     const double left = static_cast<double>(samples_.size()) - static_cast<double>(linear + 2);
@@ -217,9 +256,10 @@ class AbsorptionProblem {
   }
 
  private:
-  std::span<const DepthSample<S>> samples_;
+  std::span<const DepthSample<S>> seen_;
+  std::vector<DepthSample<S>> samples_;  // with the nearest colours for which F is 0
   S scale_mm_;
-  std::vector<S> weights_;  // of each equation
+  std::vector<S> weights_, left_;  // of each equation; F of the colours that were seen
 };
 
 /// Levenberg-Marquardt descent from p; true if it converged to roundoff.
@@ -361,9 +401,9 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples)
           "and green are exchanged");
   Fit fit;
   bool converged = false;
-  for (int round = 0; round < 3; ++round) {  // the noise of F depends, weakly, on the fit
+  for (int round = 0; round < 4; ++round) {  // the noise of F depends on the fit
     problem.weigh(p);
-    converged = detail::descend(problem, p, 200);
+    converged = detail::descend(problem, p, 60);
   }
 
   // R over the scales of the parameters, for a condition number that does not depend on units;
@@ -372,6 +412,7 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples)
   std::array<S, all> size;
   size.fill(p.linear[Fit::kappa_terms]);
   std::fill_n(size.begin(), Fit::kappa_terms, p.linear[0]);
+  size[linear - 1] = Degree > 0 ? S(10) : size[linear - 1];
   size[linear] = p.c_red;
   size[linear + 1] = (std::max)(p.delta, p.c_red / S(10));
   const std::vector<S> covariance = p.triangle.covariance(all);
@@ -393,7 +434,8 @@ AbsorptionFit<S, Degree> fit_absorption(std::span<const DepthSample<S>> samples)
   fit.light.scattering.scale_mm = fit.light.kappa.scale_mm = scale_mm;
   const auto of_g = p.linear.begin() + Fit::kappa_terms;
   std::copy(p.linear.begin(), of_g, fit.light.kappa.coefficient.begin());
-  std::copy(of_g, p.linear.end(), fit.light.scattering.coefficient.begin());
+  std::copy_n(of_g, fit.light.scattering.terms, fit.light.scattering.coefficient.begin());
+  fit.red_blur = Degree > 0 ? p.linear.back() : S(0);
   fit.delta_at_limit = !(p.delta > S(0));
 
   const double left = static_cast<double>(samples.size()) - static_cast<double>(all);
