@@ -241,8 +241,9 @@ TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_d
     const auto slid = slide(after.depth_mm, after.contact, dots);
     RC_LOG() << slid.imprint_px.x << ", " << slid.imprint_px.y << " +- " << slid.imprint_sd_px
              << " px for " << way.x << ", " << way.y << "\n";
-    RC_ASSERT(slid.status == SlideStatus::updated);
-    RC_ASSERT(norm(slid.slide_px - way) < 0.2);
+    RC_ASSERT(norm(slid.imprint_px - way) < 0.2);
+    RC_ASSERT(slid.ok() == (slid.dots >= 3));  // a small ball covers fewer
+    RC_ASSERT((!slid.ok() || norm(slid.slide_px - way) < 0.2));
   });
 }
 

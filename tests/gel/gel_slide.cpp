@@ -166,6 +166,17 @@ TEST_CASE("gel slide: what it says when it cannot tell", "[gel_slide]") {
   CHECK(look({}, slide).status == SlideStatus::began);
   const Dots none(5, 7, Point2<double>{missing, missing});
   CHECK(slide(pad.imprint(), pad.contact(), none).status == SlideStatus::no_dots);
+  for (const Index left : {2, 3}) {  // of two, one could be wrong
+    slide = slide_from();
+    CHECK(look({}, slide).status == SlideStatus::began);
+    Dots few = none;
+    const auto all_dots = pad.dots();
+    for (Index k = 0; k < left; ++k) {
+      few(2, 2 + k) = all_dots(2, 2 + k);
+    }
+    CHECK(slide(pad.imprint(), pad.contact(), few).dots == left);
+    CHECK(slide(pad.imprint(), pad.contact(), few).ok() == (left == 3));
+  }
 
   const Image<std::uint8_t> all(height, width, 1);
   CHECK(slide(pad.imprint(), all, pad.dots()).status == SlideStatus::no_edge);

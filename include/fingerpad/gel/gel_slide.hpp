@@ -60,8 +60,9 @@ inline std::string check(const SlideOptions& o) {
 enum class SlideStatus : std::uint8_t {
   updated,  ///< slide and area are those of this frame
   began,    ///< the first frame of a contact, from which slide and loss are measured
-  /// No dot in the contact was found both before and now, or most dots are more than 0.75 pitches
-  /// from where they are in the free pad: their labels have changed. The last slide is kept.
+  /// Fewer than three dots in the contact were found both before and now, of which one could be
+  /// wrong, or most dots are more than 0.75 pitches from where they are in the free pad: their
+  /// labels have changed. The last slide is kept.
   no_dots,
   not_found,   ///< the imprint was not found again: the last slide is kept
   no_contact,  ///< the area is below min_cells; after a contact, all of its area counts as lost
@@ -171,6 +172,7 @@ class GelSlide {
   static constexpr double min_correlation = 0.6;    // of an imprint that is found
   static constexpr double max_displacement = 0.75;  // pitches, of most dots; gels yield by less
   static constexpr std::size_t min_dots = 5;        // for a recoil
+  static constexpr Index least_dots = 3;            // of which the median is a motion
   static constexpr Index max_cells = 2048;
   static constexpr double min_cells = 30;
   static constexpr double smoothed_cells = 28;  // correlated cells: 4 pi sd^2 of a smoothing with
@@ -292,15 +294,15 @@ class GelSlide {
     result_.imprint_sd_px =
         std::hypot(key_.imprint_sd_px, options_.cell_px * std::sqrt(travel.variance));
     const Point2<double> dots_px = motion_of_dots();
-    result_.status = result_.dots > 0 ? SlideStatus::updated : SlideStatus::no_dots;
-    if (result_.dots > 0) {
+    const bool known = result_.dots >= least_dots;
+    result_.status = known ? SlideStatus::updated : SlideStatus::no_dots;
+    if (known) {
       result_.slide_px = key_.slide_px + imprint_px - dots_px;
       result_.slide = norm(result_.slide_px) / pitch_px_;
     }
     // in motion each frame becomes the key frame of the next; at rest the key frame stays, so that
     // errors do not add up
-    if (norm(travel.shift) > 1 || travel.correlation < (1 + min_correlation) / 2 ||
-        result_.dots == 0) {
+    if (norm(travel.shift) > 1 || travel.correlation < (1 + min_correlation) / 2 || !known) {
       set_key(now, area);
     }
   }
