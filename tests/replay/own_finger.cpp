@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <utility>
@@ -238,6 +239,18 @@ TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
   const auto report = calibrated(scratch.path());
   CHECK(report.verdict == calibrate::Verdict::doubtful);
   CHECK(report.because.find("press 2 is not where") != std::string::npos);
+}
+
+TEST_CASE("a finger of one's own: compressed pictures are told", "[own]") {
+  const test::ScratchFolder scratch;
+  record(scratch.path(), 0, 40);
+  const fs::path file = scratch.path() / "reference.png";
+  cv::Mat picture;
+  std::vector<uchar> bytes;
+  replay::read_colour_image(file).convertTo(picture, CV_8U, 1.0 / 256);
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
+  replay::write_png(file, cv::imdecode(bytes, cv::IMREAD_COLOR));
+  CHECK(calibrated(scratch.path()).because.find("compressed") != std::string::npos);
 }
 
 TEST_CASE("a finger of one's own: glare is left out, and no press is blamed", "[own]") {

@@ -292,6 +292,10 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
   report.doubt(!fit.ok(), text_of(fit));
   const std::string misplaced = misplaced_press(error_mm, samples);
   report.doubt(!misplaced.empty(), misplaced);
+  const double step = replay::step_between_blocks(known.reference, known.free_mm > 0);
+  report.doubt(step > replay::compressed_step,
+               "the pictures were compressed: depths are right to what is left over, but c_red and "
+               "c_green err by more than their sd; calibrate with PNG or raw pictures");
   const bool mixed = sd(0) > fluid.c_red_per_mm / 2;
   report.doubt(depth_sd > 0.05,
                std::string("the fit alone makes depths uncertain by more than 0.05 mm") +
