@@ -7,14 +7,10 @@
 // vision-based tactile sensor" (slides), parameter identification, which solves three equations for
 // three unknowns; printed error E005.
 //
-// For fixed c_red and delta = c_green - c_red the equation is linear in the coefficients of kappa
-// and g over the plate, which a QR factorisation eliminates (variable projection). The
-// Levenberg-Marquardt method finds the other two, as (ln c_red, delta), so that c_red > 0, with
-// delta held at >= 0.
-//
-// The parameters are far less certain than the depth: their errors compensate to microns of depth
-// (docs/depth/depth.md). The result therefore includes the covariance, from which the error of a
-// depth is predicted.
+// kappa and g are linear and eliminated by a QR factorisation (variable projection); the
+// Levenberg-Marquardt method finds (ln c_red, delta), so that c_red > 0, with delta held at >= 0.
+// The parameters are far less certain than the depth (docs/depth/depth.md, calibration). The result
+// therefore includes the covariance, from which the error of a depth is predicted.
 #include <algorithm>
 #include <array>
 #include <cmath>

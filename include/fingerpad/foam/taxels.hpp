@@ -4,18 +4,10 @@
 // Features of a foam finger at each sample: where it is pressed, which taxel vibrates and how fast.
 // Source: "Pre-Slip Sensing Using Tactile Sensor" (2007), the data of its stack: x-bar and y-bar,
 // vibrating location, and vibration frequency as the number of sensed waves. The paper gives no
-// formulas for them; here they are
+// formulas for them; docs/foam/preslip.md has those used here. A taxel vibrates where its readings
+// deviate from a straight line in the window by more than its noise: a grip that is loosened evenly
+// does not vibrate. Waves are crossings of that line, two per wave.
 //
-//   centroid   sum of reading x position / sum of readings, over the taxels that press
-//   location   the taxel whose readings deviate most from a straight line in the window, by more
-//              than its noise: a grip that is loosened evenly does not vibrate. Among equals, the
-//              first in row-major order
-//   waves      crossings of that line, two per wave. They are counted per window of samples, so
-//              that a gap of the clock does not reduce their number. A step, as of a taxel that
-//              lets go, counts as one wave that has begun. Waves shorter than three samples may be
-//              missed
-//
-// "Some tactile elements" may vibrate: all of them are listed, each with its waves.
 // Taxels that are dead, saturated, stuck, flickering or missing are left out. They can vibrate
 // again a whole window after they were last bad. A taxel is stuck only where it should have
 // changed: an object that is held still stays felt.
