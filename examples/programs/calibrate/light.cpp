@@ -292,8 +292,8 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
   report.doubt(!fit.ok(), text_of(fit));
   const std::string misplaced = misplaced_press(error_mm, samples);
   report.doubt(!misplaced.empty(), misplaced);
-  const double step = replay::step_between_blocks(known.reference, known.free_mm > 0);
-  report.doubt(step > replay::compressed_step,
+  const cv::Mat pad = known.free_mm > 0;
+  report.doubt(replay::step_between_blocks(known.reference, pad) > replay::compressed_step,
                "the pictures were compressed: depths are right to what is left over, but c_red and "
                "c_green err by more than their sd; calibrate with PNG or raw pictures");
   const bool mixed = sd(0) > fluid.c_red_per_mm / 2;
