@@ -82,12 +82,10 @@ void try_slide(Input& in, double scale) {
     const auto slid = fuzz::frame([&] { return slide(imprint, gel.mask(), dots.view()); });
     const auto copied = copy(imprint, gel.mask(), dots.view());
     require(slid.status != SlideStatus::refused && slid.status == copied.status &&
-                fuzz::same_bits(slid.evidence, copied.evidence) &&
-                fuzz::same_bits(slid.recoil, copied.recoil),
+                fuzz::same_bits(slid.evidence, copied.evidence),
             "a copy gives the same bits");
     require(is_finite(slid.slide_px) && slid.evidence >= 0 && slid.lost >= 0 && slid.lost <= 1,
             "a slide is finite and a share is in [0, 1]");
-    require(!(slid.recoil < 0), "a recoil is not negative");
     require(slid.held() >= 0 && slid.held() <= 1, "the held share is in [0, 1]");
   }
 }

@@ -248,7 +248,6 @@ TEST_CASE("gel slide: a small contact is followed", "[gel_slide]") {
   CHECK(moved.status == SlideStatus::updated);
   CHECK(norm(moved.imprint_px - Point2<double>{1.2, 0}) < 0.2);
   CHECK(moved.dots == 4);
-  CHECK(std::isnan(moved.recoil));
 }
 
 TEST_CASE("gel slide: the standard deviation is the mean of both axes", "[gel_slide]") {
@@ -276,31 +275,6 @@ TEST_CASE("gel slide: the standard deviation is the mean of both axes", "[gel_sl
   CHECK(sd_px(true) == Approx(sd_px(false)).epsilon(1e-9));
 }
 
-TEST_CASE("gel slide: recoil is how far dots have sprung back, with or without contact",
-          "[gel_slide]") {
-  GelSlide slide = slide_from();
-  double largest = 0;
-  for (const double at : {0.0, 8.0, 16.0, 6.0, 10.0}) {
-    const double radius = at == 6 ? 2 : 14;
-    const auto result = look({.radius = radius, .dots_shift = {0, at}}, slide);
-    largest = (std::max)(largest, at / 40);
-    CHECK(result.touches() == (radius == 14));
-    CHECK(result.recoil == Approx(largest - at / 40).margin(1e-12));
-  }
-  const Pad pad;
-  const auto recoil = [&](const Dots& dots) {
-    return slide(pad.imprint(), pad.contact(), dots).recoil;
-  };
-  CHECK(std::isnan(recoil(Dots(5, 7, Point2<double>{missing, 1}))));
-  CHECK(std::isnan(recoil(Dots(5, 7, Point2<double>{1e30, 1}))));
-  CHECK(recoil(pad.dots()) == Approx(0.4));
-  slide = slide_from();
-  CHECK(recoil(pad.dots()) == 0);
-  const auto refused = slide(pad.imprint(), pad.contact(), Dots(4, 7));
-  CHECK(refused.status == SlideStatus::refused);
-  CHECK(refused.evidence == 0);
-}
-
 TEST_CASE("gel slide: dots with other labels than in the free pad do not count", "[gel_slide]") {
   GelSlide slide = slide_from();
   CHECK(look({}, slide).status == SlideStatus::began);
@@ -308,7 +282,6 @@ TEST_CASE("gel slide: dots with other labels than in the free pad do not count",
   const auto shifted = look({.dots_shift = {40, 0}}, slide);  // the names of the next column
   CHECK(shifted.status == SlideStatus::no_dots);
   CHECK(shifted.slide < 1e-9);
-  CHECK(std::isnan(shifted.recoil));
   CHECK(look({.dots_shift = {29, 0}}, slide).dots == 0);  // the key frame had no dots
   CHECK(look({.dots_shift = {29, 0}}, slide).status == SlideStatus::updated);
 }

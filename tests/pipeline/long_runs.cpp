@@ -246,7 +246,7 @@ TEST_CASE("long runs: after lost contact an object's motion begins anew", "[long
   }
 }
 
-TEST_CASE("long runs: a copy of the start forgets all slides and recoils", "[long_run]") {
+TEST_CASE("long runs: a copy of the start forgets all slides", "[long_run]") {
   Any any;
   const GelSlide start(20, 20, lattice(any, 0), {.cell_px = 6, .min_cells = 30});
   GelSlide slide = start, fresh = start;
@@ -258,8 +258,7 @@ TEST_CASE("long runs: a copy of the start forgets all slides and recoils", "[lon
     const auto cells = imprint(any, x, y);
     const auto r =
         slide(cells, pressed(cells), lattice(any, static_cast<float>(any.number(-9, 9))));
-    sound = sound && is_finite(r.slide_px) && r.lost >= 0 && r.lost <= 1 && r.held() >= 0 &&
-            !(r.recoil < 0);
+    sound = sound && is_finite(r.slide_px) && r.lost >= 0 && r.lost <= 1 && r.held() >= 0;
     if (any.once_in(3000)) {
       slide = start;
     }
@@ -276,7 +275,6 @@ TEST_CASE("long runs: a copy of the start forgets all slides and recoils", "[lon
     CHECK(a.status == b.status);
     CHECK(a.evidence == b.evidence);
     CHECK(a.slide_px.x == b.slide_px.x);
-    CHECK(a.recoil == b.recoil);
   }
 }
 

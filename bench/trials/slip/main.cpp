@@ -47,8 +47,6 @@ void print_events_of(const std::vector<Trial>& trials,
       "imprint past dots", [](const View& v) { return v.slide.slide; }, none);
   print(
       "area lost", [](const View& v) { return v.slide.lost; }, none);
-  print(
-      "recoil of the dots", [](const View& v) { return v.slide.recoil; }, none);
   const auto slipping = [](const View& view) {
     std::vector<double> share;
     for (const double ratio : view.ratio) {

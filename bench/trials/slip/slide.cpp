@@ -106,7 +106,6 @@ SlideSeries slide_in(const std::vector<cv::Mat>& frames,
     series.slide.push_back(seen.slide.slide);
     series.lost.push_back(seen.slide.lost);
     series.evidence.push_back(seen.slide.evidence);
-    series.recoil.push_back(seen.slide.recoil);
     largest = (std::max)(largest, seen.contact.contact_px);
     if (static_cast<double>(seen.contact.contact_px) < gone * static_cast<double>(largest)) {
       series.end = (std::min)(series.end, k);

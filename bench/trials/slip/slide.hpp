@@ -17,7 +17,6 @@ struct SlideSeries {
   std::vector<double> slide;     ///< in pitches
   std::vector<double> lost;      ///< lost share of the contact's area
   std::vector<double> evidence;  ///< from both; above 1 the method raises an alarm
-  std::vector<double> recoil;    ///< from the dots alone, in pitches
   std::size_t end = 0;           ///< first frame in which contact is lost, or the number of frames
 };
 

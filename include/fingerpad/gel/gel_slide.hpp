@@ -7,9 +7,7 @@
 //   slide  displacement of the imprint relative to the dots in it since the contact began
 //   lost   fraction of the largest contact area so far that has been lost
 // The dots alone (slip/stick_ratio.hpp) do not show this, because an object that slides as a whole
-// leaves them where they are. Use the stick ratio on membranes and this method on gels. A third
-// measure needs dots only, but is later and does not tell a slip from an object that is set down:
-//   recoil how far the dots have sprung back toward the free pad
+// leaves them where they are. Use the stick ratio on membranes and this method on gels.
 //
 // The imprint is any image in which the contact is visible: that of GelContact, or a depth map.
 // Its travel is the translation that maps an earlier imprint to the present one, up to a gain and
@@ -85,9 +83,6 @@ struct [[nodiscard]] SlideResult {
   Point2<double> slide_px = {0, 0};    ///< displacement of the imprint relative to the dots in it
   double slide = 0;                    ///< |slide_px| in pitches
   double lost = 0;  ///< fraction of the largest area so far that has been lost, in [0, 1]
-  /// The displacement from the free pad, in pitches, that 95 % of the dots stay below, less than it
-  /// was at its largest so far. From 0.1 on the pad has sprung back. NaN with fewer than 5 dots.
-  double recoil = not_a_number<double>();
   /// Evidence for slip: the larger of slide / max_slide and lost / max_lost, the latter as far as
   /// min_slide allows.
   double evidence = 0;
@@ -141,7 +136,7 @@ class GelSlide {
       return {};
     }
     dots_.read(dots, true);
-    find_recoil();
+    discard_mislabelled();
     const Index area = read_contact(touch);
     result_.dots = 0;
     if (static_cast<double>(area) > filled * static_cast<double>(rows_ * cols_)) {
@@ -153,7 +148,7 @@ class GelSlide {
     } else if (!began_) {
       began_ = true;
       max_area_ = area;
-      result_ = {.status = SlideStatus::began, .recoil = result_.recoil};
+      result_ = {.status = SlideStatus::began};
       set_key(now, area);
     } else {
       max_area_ = (std::max)(max_area_, area);
@@ -171,7 +166,6 @@ class GelSlide {
   static constexpr double filled = 0.95;            // of the image: there is no imprint
   static constexpr double min_correlation = 0.6;    // of an imprint that is found
   static constexpr double max_displacement = 0.75;  // pitches, of most dots; gels yield by less
-  static constexpr std::size_t min_dots = 5;        // for a recoil
   static constexpr Index least_dots = 3;            // of which the median is a motion
   static constexpr Index max_cells = 2048;
   static constexpr double min_cells = 30;
@@ -212,8 +206,8 @@ class GelSlide {
     return quantile(x_, 0.5);
   }
 
-  /// Finds the recoil. Discards all dots if most are too far from where they belong.
-  void find_recoil() {
+  /// Discards all dots if most are too far from where they belong.
+  void discard_mislabelled() {
     x_.clear();
     for (Index k = 0; k < detail::size_of(free_); ++k) {
       const double displaced = norm(dots_.found[k] - free_[k]) / pitch_px_;
@@ -223,13 +217,6 @@ class GelSlide {
     }
     if (quantile(x_, 0.5) > max_displacement) {
       std::fill(dots_.found.begin(), dots_.found.end(), detail::missing_point<double>());
-      x_.clear();
-    }
-    result_.recoil = not_a_number<double>();
-    if (x_.size() >= min_dots) {
-      const double displaced = quantile(x_, 0.95);
-      max_displaced_ = (std::max)(max_displaced_, displaced);
-      result_.recoil = max_displaced_ - displaced;
     }
   }
 
@@ -393,7 +380,6 @@ class GelSlide {
   detail::ReservedVector<double> x_, y_;
   double cells_per_sample_ = 1;
   Point2<double> last_shift_ = {0, 0};  // since the key frame, in cells
-  double max_displaced_ = 0;
   Index max_area_ = 0;
   bool began_ = false;
   SlideResult key_, result_;  // of the key frame, of the last frame

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* columns =
     "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
-    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,area_lost,recoil_pitches,"
+    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,area_lost,"
     "slip_evidence,slip";
 
 SlideStep step_of(const Options& options, const FreePad& free, const DotSource& dots) {
@@ -68,8 +68,8 @@ void GelReplay::write_row(const GelScene& row) {
          << (seen.contact.ok() ? name_of(seen.slide.status) : name_of(seen.contact.status)) << ','
          << seen.slide.dots << ',' << cell_of(seen.slide.slide_px.x) << ','
          << cell_of(seen.slide.slide_px.y) << ',' << cell_of(seen.slide.slide) << ','
-         << cell_of(seen.slide.lost) << ',' << cell_of(seen.slide.recoil) << ','
-         << cell_of(seen.slide.evidence) << ',' << (seen.slide.alarm ? 1 : 0) << '\n';
+         << cell_of(seen.slide.lost) << ',' << cell_of(seen.slide.evidence) << ','
+         << (seen.slide.alarm ? 1 : 0) << '\n';
 }
 
 void GelReplay::finish() {
