@@ -129,6 +129,9 @@ TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
     const double beyond_mm2 = found.area_mm2 - film.area_mm2();
     CHECK(beyond_mm2 < 2 * found.area_sd_mm2);
     CHECK(found.area_sd_mm2 < beyond_mm2);
+    const double one_minus_iou = beyond_mm2 / found.area_mm2;  // concentric
+    CHECK(found.expected_one_minus_iou() < one_minus_iou);
+    CHECK(one_minus_iou < 2.5 * found.expected_one_minus_iou());
     const double law = std::sqrt(gap / film.free_per_mm);
     CHECK(radius - edge > 0.9 * law);
     CHECK(radius - edge < 1.1 * law);

@@ -175,13 +175,15 @@ TEST_CASE("wrench: whether it is uncertain goes by the press that is measured", 
   for (const double press_n : {0.05, 0.3, 0.6, 1.0, 1.5, 2.0, 5.0}) {
     const auto result = fit(press_n);
     const double arm_mm = std::sqrt(press_n / (std::numbers::pi * pressure));
-    const std::array<double, 6> most = {0.015,          0.015,          0.096,
-                                        0.081 * arm_mm, 0.081 * arm_mm, 0.0171 * arm_mm};
-    bool uncertain = false;
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      uncertain = uncertain || 2 * std::sqrt(result.covariance(k, k)) >
-                                   most[static_cast<std::size_t>(k)] * press_n;
-    }
+    const auto exceeds = [&](Eigen::Index first, Eigen::Index last, double most) {
+      double variance = 0;
+      for (Eigen::Index k = first; k <= last; ++k) {
+        variance += result.covariance(k, k);
+      }
+      return 2 * std::sqrt(variance) > most * press_n;
+    };
+    const bool uncertain = exceeds(0, 1, 0.015) || exceeds(2, 2, 0.096) ||
+                           exceeds(3, 4, 0.081 * arm_mm) || exceeds(5, 5, 0.0171 * arm_mm);
     CAPTURE(press_n);
     CHECK(uncertain == (press_n < 2.5));
     CHECK(result.status == (uncertain ? Status::uncertain : Status::ok));

@@ -197,7 +197,8 @@ TEST_CASE("object motion: standard deviations cover the error of a roll, and are
   const test::RollingBall ball{.rows = 11, .cols = 31, .patch_mm = 5};
   const Flags none(11, 31, 0);
   int known = 0, beyond = 0;
-  double error_sq = 0, sd_sq = 0;
+  int off_beyond = 0;
+  double error_sq = 0, sd_sq = 0, off_sq = 0, off_sd_sq = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     test::Gauss gauss(seed);
     ObjectMotion<> motion(11, 31);
@@ -205,6 +206,8 @@ TEST_CASE("object motion: standard deviations cover the error of a roll, and are
     auto result =
         motion(noisy(roll.dots, roll.contact, gauss, 0.005, 0.025), roll.contact, none, 0.025);
     CHECK(result.rotation_sd_rad == 0);  // it begins
+    const auto begun = result.position_mm;
+    const auto start = roll.pose;
     for (int k = 1; k <= 40; ++k) {
       roll.step(-10 + 20.0 * k / 40, 0.3);
       result =
@@ -215,10 +218,17 @@ TEST_CASE("object motion: standard deviations cover the error of a roll, and are
       beyond += error > 2 * sd_deg ? 1 : 0;
       error_sq += square(error);
       sd_sq += square(sd_deg);
+      // the point that the dots lay about at first, which rolls away from those that touch
+      const double off = norm(result.position_mm - (roll.pose * inverse(start))(begun));
+      off_beyond += off > 2 * result.position_sd_mm ? 1 : 0;
+      off_sq += square(off);
+      off_sd_sq += square(result.position_sd_mm);
     }
   }
   CHECK(20 * beyond <= known);
   CHECK(sd_sq < square(3.0) * error_sq);  // each dot errs alone here, not four in common
+  CHECK(20 * off_beyond <= known);
+  CHECK(off_sd_sq < square(3.0) * off_sq);
   const auto unknown = ObjectMotion<>(11, 31)(test::Rolling(ball, 0, 0).dots, none);
   CHECK(!is_finite(unknown.rotation_sd_rad));
 }

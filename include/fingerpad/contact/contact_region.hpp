@@ -83,6 +83,11 @@ struct [[nodiscard]] ContactResult {
   bool accepted() const { return status != FrameStatus::refused; }
   bool ok() const { return status == FrameStatus::ok; }
   bool in_contact() const { return contact_px > 0; }
+  /// What 1 - IoU with the true region is expected to be, in [0, 1]: an area that is wrong by its
+  /// standard deviation is so by its edge. NaN where nothing is found.
+  double expected_one_minus_iou() const {
+    return in_contact() ? 1 - std::exp(-area_sd_mm2 / area_mm2) : not_a_number<double>();
+  }
 };
 
 /// The contact region of depth maps of one size, computed in the scalar S.

@@ -240,13 +240,15 @@ class Wrench {
     const double press_n =
         options_.full_scale_n > 0 ? options_.full_scale_n : pressure_mpa * area_mm2;
     const double arm_mm = std::sqrt(press_n / (std::numbers::pi * pressure_mpa));
-    const double along = 0.03 / 2, tilting = 0.09 * 0.9 * arm_mm, turning = 0.057 * 0.3 * arm_mm;
-    const double most[] = {along, along, 0.096, tilting, tilting, turning};
-    bool uncertain = false;
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      uncertain = uncertain || 4 * result.covariance(k, k) > square(most[k] * press_n);
-    }
-    return uncertain;
+    const auto exceeds = [&](Eigen::Index first, Eigen::Index axes, double most) {
+      double variance = 0;
+      for (Eigen::Index k = first; k < first + axes; ++k) {
+        variance += result.covariance(k, k);
+      }
+      return 4 * variance > square(most * press_n);
+    };
+    return exceeds(0, 2, 0.03 / 2) || exceeds(2, 1, 0.096) || exceeds(3, 2, 0.09 * 0.9 * arm_mm) ||
+           exceeds(5, 1, 0.057 * 0.3 * arm_mm);
   }
 
   using FreeRadii = std::array<double, 81>;  // on the plate, over the arc

@@ -66,7 +66,8 @@ struct [[nodiscard]] ObjectMotionResult {
   /// Standard deviations of the position, as the length of its error, and of the angle between
   /// found and true rotation, since the object began; NaN without depth_noise_mm. The noise of a
   /// dot, or the residual if that is larger, is common to about four dots, as far as depth is
-  /// smoothed, and moves the position as a whole; what dots that leave take with them adds up.
+  /// smoothed; what dots that leave take with them adds up, and the further the position lies from
+  /// the dots that touch now, the more the rotation moves it.
   S position_sd_mm = not_a_number<S>();
   S rotation_sd_rad = not_a_number<S>();
 
@@ -181,9 +182,9 @@ class ObjectMotion {
     return doubted ? MotionStatus::doubtful : MotionStatus::ok;
   }
 
-  /// Variance of the pose's angle per variance of a dot's depth: that of a plane through them. The
-  /// memory of the pose is worth as much when the object begins, and loses with each share of new
-  /// dots, which are entered with the pose of their frame.
+  /// Variance of the pose's angle per variance of a dot's depth: that of a plane through them, and
+  /// of its height in their middle. The memory of the pose is worth as much when the object begins,
+  /// and loses with each share of new dots, which are entered with the pose of their frame.
   void estimate_errors(double depth_noise_mm) {
     using std::sqrt;
     if (!last_.has_pose() || !(depth_noise_mm > 0)) {
@@ -200,13 +201,16 @@ class ObjectMotion {
       spread_sq = spread_sq + squared_norm(frame_.found[k] - middle);
     }
     constexpr double common = 4;  // dots with one error
-    const S tilt = S(4 * common) / spread_sq;
+    const S tilt = S(4 * common) / spread_sq, shift = S(common) / count;
     const S renewed = S(static_cast<double>(fresh_)) / S(static_cast<double>(known_ + fresh_));
     memory_ = last_.begun ? tilt : memory_ + renewed * tilt;
+    shift_memory_ = last_.begun ? shift : shift_memory_ + renewed * shift;
     const S noise =
         S(depth_noise_mm) < last_.residual_rms_mm ? last_.residual_rms_mm : S(depth_noise_mm);
-    last_.position_sd_mm = S(std::numbers::sqrt2) * noise;
     last_.rotation_sd_rad = last_.begun ? S(0) : noise * sqrt(memory_ + tilt);
+    const S lever_sq = squared_norm(last_.position_mm - middle);
+    last_.position_sd_mm = sqrt(square(noise) * (shift_memory_ + shift) +
+                                lever_sq / S(2) * square(last_.rotation_sd_rad));
   }
 
   void end() {
@@ -305,6 +309,7 @@ class ObjectMotion {
   bool has_object_ = false;
   bool has_slid_ = false;  ///< and no object has begun since
   S memory_ = S(0);        ///< variance of the map's angle per variance of a dot's depth, 1/mm^2
+  S shift_memory_ = S(0);  ///< and of its height
   S pitch_sq_ = S(0);      ///< mean square distance of neighbours when the object began, mm^2
   Point3<S> start_mm_ = {S(0), S(0), S(0)};
   ObjectMotionResult<S> last_;

@@ -206,7 +206,7 @@ class Fingertip {
       measure_light(touch);
     }
     if (dots_) {
-      dots_->conclude(touch);
+      dots_->conclude(touch, wrench_.has_value());
     }
     touch.status = judge(touch, pressure_mpa);
     return touch;
@@ -264,7 +264,7 @@ class Fingertip {
   }
 
   /// A vague edge, as that of a first touch is; or what the rim says, which has not seen the
-  /// contact: a press beyond four standard deviations where no region is found, or an area on which
+  /// contact: a press beyond two standard deviations where no region is found, or an area on which
   /// the pressure alone exceeds the press by a quarter. On an object that is rigid and not hollow,
   /// the membrane's tension only adds to the pressure.
   static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
@@ -273,7 +273,7 @@ class Fingertip {
     const double press_n = -touch.wrench.force_n.z;
     const double sd_n = std::sqrt(touch.wrench.covariance(2, 2));
     if (!contact.in_contact()) {
-      return is_felt && press_n > 4 * sd_n;
+      return is_felt && press_n > 2 * sd_n;
     }
     return detail::has_vague_edge(contact) ||
            (is_felt && pressure_mpa * contact.area_mm2 > 1.25 * (press_n + 2 * sd_n));

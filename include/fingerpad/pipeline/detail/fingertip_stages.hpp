@@ -162,6 +162,10 @@ inline bool has_vague_edge(const ContactResult& contact) {
 
 /// Slip and motion from the printed dots: all that a fingertip remembers from frame to frame.
 struct FingertipDots {
+  /// A pose that two standard deviations may put further off, or that rests on a stick ratio in
+  /// doubt, is doubtful.
+  static constexpr double most_place_mm = 0.072, most_rotation_rad = 3.2 / 180 * std::numbers::pi;
+
   OwnedGrid<Point2<double>> seen;  // in px of the samples
   OwnedGrid<Point3<double>> at_mm;
   OwnedGrid<std::uint8_t> touching;
@@ -234,8 +238,8 @@ struct FingertipDots {
 
   /// Decides whether the object slides, which needs the forces, and computes its motion from the
   /// dots that stick.
-  void conclude(FingertipResult& touch) {
-    touch.slip = friction(load_of(touch), touch.stick);
+  void conclude(FingertipResult& touch, bool has_six_axes) {
+    touch.slip = friction(load_of(touch, has_six_axes), touch.stick);
     const LazyView slips(seen.rows, seen.cols,
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
     if (has_vague_edge(touch.contact) && !follows) {
@@ -243,17 +247,21 @@ struct FingertipDots {
     }
     touch.motion = motion(at_mm.view(), held.view(), slips, depth_noise_mm);
     follows = touch.motion.has_pose();
-    if (touch.motion.ok() && touch.light_in_doubt()) {
-      touch.motion.status = MotionStatus::doubtful;
-    }
-    touch.motion.position_sd_mm = std::hypot(touch.motion.position_sd_mm, touch.depth_light_sd_mm);
+    ObjectMotionResult<double>& pose = touch.motion;
+    pose.position_sd_mm = std::hypot(pose.position_sd_mm, touch.depth_light_sd_mm);
+    const bool is_known = 2 * pose.position_sd_mm < most_place_mm &&
+                          2 * pose.rotation_sd_rad < most_rotation_rad && !touch.slip.in_doubt;
+    pose.status = pose.ok() && !is_known ? MotionStatus::doubtful : pose.status;
   }
 
-  /// The load from a six-axis force, else from the look-up; unknown without both.
-  ContactLoad<double> load_of(const FingertipResult& touch) const {
-    if (touch.wrench.ok()) {
-      return contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
-                          touching.view());
+  /// The load from the six axes where they exist, else from the look-up; never from one after the
+  /// other, because the limit of friction is learnt from it. Unknown without both.
+  ContactLoad<double> load_of(const FingertipResult& touch, bool has_six_axes) const {
+    if (has_six_axes) {
+      const bool is_known = touch.wrench.ok() || touch.wrench.status == WrenchStatus::uncertain;
+      return is_known ? contact_load(touch.wrench.force_n, touch.wrench.moment_n_mm, at_mm.view(),
+                                     touching.view())
+                      : ContactLoad<double>{};
     }
     const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
     return {touch.normal.force_n, norm(touch.shear.tangential_force_n), touch.shear.moment_n_mm,
