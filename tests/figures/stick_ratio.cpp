@@ -41,7 +41,7 @@ TEST_CASE("stick ratio of synthetic dots, with all effects", "[stick_ratio]") {
                         << ", worst " << e.worst << ", frames with an answer " << e.updated
                         << ", dots told wrong " << e.wrong_dots);
     CHECK(e.mean_abs <= 0.03);
-    CHECK(e.updated >= 0.9);
+    CHECK(e.updated >= 0.8);  // the first steps are shorter than U
   }
 }
 

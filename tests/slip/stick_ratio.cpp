@@ -736,7 +736,7 @@ TEST_CASE("stick ratio: without a given noise it holds in every unit") {
       expected[k] = unit == 1 ? r : expected[k];
       CHECK(same(r, expected[k]));
     }
-    CHECK(updated > 8);
+    CHECK(updated > 7);
     CHECK(f.stick.noise() == Approx(0.05 * unit).epsilon(0.1));
   }
 }

@@ -79,8 +79,8 @@ constexpr const char* name_of(StickStatus status) {
 /// The thresholds follow from the noise, 1 % of sticking dots being taken for slipping:
 ///   delta_0 = 2 gain noise sqrt(ln(1 / 0.01)), gain 0.416 by averaging over neighbours,
 ///   U = delta_0 / slip_share: the reference is the newest stored frame from which a dot in contact
-///   has moved further, else by U / 2 (in the image only where the noise is not given); a frame is
-///   stored when a dot has moved U / 4 from the newest stored one. The last 64 are kept.
+///   has moved further, else in space by U / 2; a frame is stored when a dot has moved U / 4 from
+///   the newest stored one. The last 64 are kept.
 struct StickOptions {
   /// Standard deviation of a dot along x and along y, >= 0; 0: measured between successive frames.
   double noise = 0;
@@ -374,13 +374,11 @@ class StickRatio {
     }
     return status;
   }
-  /// The newest stored frame further than U, else the newest one further than U / 2, which will do
-  /// with the limit of U; -1: none. The search goes back as long as the distance grows. Where it
-  /// begins to shrink, the object has reversed, and older frames are not examined. Of a rolling
-  /// object, which no motion in the image describes, U / 2 makes dots slip: it is not for an image
-  /// whose noise is given.
+  /// The newest stored frame further than U, else in space the newest one further than U / 2, which
+  /// will do with the limit of U; -1: none. The search goes back as long as the distance grows.
+  /// Where it begins to shrink, the object has reversed, and older frames are not examined. Of a
+  /// rolling object, which no motion in the image describes, U / 2 would make dots slip.
   Index age_of_reference(const S& reference_sq) const {
-    const bool is_strict = frame_.in_image && options_.noise > 0;
     Index near = -1;
     S before = S(-1);
     for (Index age = 0; age < stored_count_; ++age) {
@@ -391,7 +389,7 @@ class StickRatio {
       if (value(sq) > value(reference_sq)) {
         return age;
       }
-      near = near < 0 && !is_strict && 4 * value(sq) > value(reference_sq) ? age : near;
+      near = near < 0 && !frame_.in_image && 4 * value(sq) > value(reference_sq) ? age : near;
       before = sq;
     }
     return near;
