@@ -163,7 +163,7 @@ inline bool has_vague_edge(const ContactResult& contact) {
 /// Slip and motion from the printed dots: all that a fingertip remembers from frame to frame.
 struct FingertipDots {
   /// A pose that two standard deviations may put further off, or that rests on a stick ratio in
-  /// doubt, is doubtful.
+  /// doubt below 0.8, is doubtful.
   static constexpr double most_place_mm = 0.072, most_rotation_rad = 3.2 / 180 * std::numbers::pi;
 
   OwnedGrid<Point2<double>> seen;  // in px of the samples
@@ -249,8 +249,10 @@ struct FingertipDots {
     follows = touch.motion.has_pose();
     ObjectMotionResult<double>& pose = touch.motion;
     pose.position_sd_mm = std::hypot(pose.position_sd_mm, touch.depth_light_sd_mm);
+    // one that mostly sticks has not slid as a whole, whatever its ratio
+    const bool may_have_slid = touch.slip.in_doubt && touch.slip.stick_ratio < 0.8;
     const bool is_known = 2 * pose.position_sd_mm < most_place_mm &&
-                          2 * pose.rotation_sd_rad < most_rotation_rad && !touch.slip.in_doubt;
+                          2 * pose.rotation_sd_rad < most_rotation_rad && !may_have_slid;
     pose.status = pose.ok() && !is_known ? MotionStatus::doubtful : pose.status;
   }
 
