@@ -39,6 +39,16 @@ cv::Mat_<float> light_of(const cv::Mat& image) {
   return light;
 }
 
+/// What the red sites of a raw mosaic see: red at every second pixel of every second row.
+cv::Mat_<float> red_sites(const cv::Mat& image) {
+  cv::Mat red, levels;
+  cv::extractChannel(image, red, 2);
+  red.convertTo(levels, CV_32F, image.depth() == CV_16U ? 1.0 / 256 : 1);
+  cv::Mat_<float> sites;
+  cv::resize(levels, sites, levels.size() / 2, 0, 0, cv::INTER_NEAREST);
+  return sites;
+}
+
 /// Numbers of a table by its first column, without the header.
 std::map<int, std::vector<std::vector<double>>> read(const fs::path& file) {
   std::ifstream in(file);
@@ -230,13 +240,21 @@ int look_at(const Recording& r, std::map<std::string, Errors>& errors) {
   }
   const DotFollower free(light_of(r.reference), finder.free_px(),
                          {.radius_px = finder.pattern().radius_px});
+  Grid free_sites(21, 21);
+  for (int i = 0; i < 21; ++i) {
+    for (int j = 0; j < 21; ++j) {
+      free_sites(i, j) = {finder.free_px()(i, j).x / 2, finder.free_px()(i, j).y / 2};
+    }
+  }
+  const DotFollower raw(red_sites(r.reference), free_sites,
+                        {.radius_px = finder.pattern().radius_px / 2});
   const double most_n = *std::max_element(r.load_n.begin(), r.load_n.end());
   const DotFinder start = finder;
   for (const int step : {1, 2, 4}) {
     const auto of = [&](const std::string& dots) -> Errors& {
       return errors[camera + " | " + dots + " | " + std::to_string(step)];
     };
-    DotFollower follower = free;
+    DotFollower follower = free, of_sites = raw;
     SideDots rings = side;
     finder = start;
     Grid dots(21, 21), found(21, 21);
@@ -252,6 +270,8 @@ int look_at(const Recording& r, std::map<std::string, Errors>& errors) {
         (void)follower.restart(light, dots);
       }
       compare(dots, truth, middle, load, of("grid"));
+      (void)of_sites(red_sites(r.frames[k]), found);
+      compare(Grid(2 * found), truth, middle, load, of("grid, red sites"));
       (void)rings(light);
       std::size_t at = 0;
       for (const SideRow& row : r.rows) {

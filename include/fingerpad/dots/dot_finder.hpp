@@ -311,8 +311,8 @@ class DotFinder {
     for (double r = known ? given.radius_px : smallest_px; r <= largest_px; r *= step) {
       for (const bool bright : {false, true}) {
         if (bright == given.bright.value_or(bright)) {
-          const Attempt one = attempt(
-              frame, options, {r, 0.5, 2, bright, options.min_contrast, options.color_weights});
+          const Attempt one =
+              attempt(frame, options, {r, 2, bright, options.min_contrast, options.color_weights});
           best = one.score > best.score ? one : best;
         }
       }
@@ -321,7 +321,6 @@ class DotFinder {
       detail::SpotLook look = best.look;
       look.radius_px = known ? given.radius_px : (std::max)(best.spot.radius_px, 1.0);
       look.edge_px = best.spot.edge_px;
-      look.max_residual = detail::SpotLook().max_residual;
       const Attempt next = attempt(frame, options, look);
       if (next.score < 0.9 * best.score) {
         break;

@@ -68,29 +68,13 @@ class DotGrowth {
     for (int round = 0; round < max_rounds && grow(labels); ++round) {
       drop_misfits(labels, largest_misfit);
     }
-    // What has grown first had few neighbours to predict it.
-    claim(labels, least_neighbours, true);
-    drop_misfits(labels, largest_misfit);
   }
 
-  /// Removes labels that fit much worse than most, and by more than `max_off` of the spacing: half
-  /// a dot beside a shadow, or the shadow itself.
-  void drop_strangers(Labels& labels, double max_off) const {
-    constexpr double strange = 8;  // times the median misfit
-    const Table<double> misfits = misfits_of(labels);
-    std::vector<double> sorted;
-    for (std::size_t k = 0; k < misfits.cells().size(); ++k) {
-      if (labels.cells()[k] >= 0) {
-        sorted.push_back(misfits.cells()[k]);
-      }
-    }
-    if (sorted.empty()) {
-      return;
-    }
-    const double limit = std::fmax(max_off, strange * median(sorted));
-    for (std::size_t k = 0; k < misfits.cells().size(); ++k) {
-      labels.cells()[k] = misfits.cells()[k] > limit ? -1 : labels.cells()[k];
-    }
+  /// Median distance of labelled spots from where their neighbours put them, in spacings.
+  double usual_misfit(const Labels& labels) const {
+    std::vector<double> misfits = misfits_of(labels).cells();
+    std::erase(misfits, 0.0);
+    return misfits.empty() ? 0 : median(misfits);
   }
 
   /// Removes labels, the worst first, until none is off the position predicted by its neighbours by
@@ -158,16 +142,16 @@ class DotGrowth {
     constexpr int most = 3;
     bool any = false;
     for (int wanted = most; wanted >= least_neighbours;) {
-      const bool grown = claim(labels, wanted, false);
+      const bool grown = claim(labels, wanted);
       any = any || grown;
       wanted = grown ? most : wanted - 1;
     }
     return any;
   }
 
-  /// Labels the dots that have some labelled neighbours, the best predicted first: those without a
-  /// label, or all anew. False if no label was given.
-  bool claim(Labels& labels, int wanted, bool anew) const {
+  /// Labels dots that have none but enough labelled neighbours, the best predicted first. False if
+  /// no label was given.
+  bool claim(Labels& labels, int wanted) const {
     struct Claim {
       double distance_px;
       Index row, col;
@@ -176,14 +160,13 @@ class DotGrowth {
     std::vector<Claim> claims;
     std::vector<char> taken(static_cast<std::size_t>(spots_.size()), 0);
     for (const int label : labels.cells()) {
-      if (label >= 0 && !anew) {
+      if (label >= 0) {
         taken[static_cast<std::size_t>(label)] = 1;
       }
     }
     for (Index i = 0; i < labels.rows(); ++i) {
       for (Index j = 0; j < labels.cols(); ++j) {
-        if ((anew || labels(i, j) < 0) && is_finite(base_(i, j)) &&
-            neighbours(labels, i, j) >= wanted) {
+        if (labels(i, j) < 0 && is_finite(base_(i, j)) && neighbours(labels, i, j) >= wanted) {
           const auto hit = spots_.nearest(expected(labels, i, j), gate * spacing_px_(i, j));
           if (hit.spot >= 0) {
             claims.push_back({hit.distance_px, i, j, hit.spot});
@@ -193,9 +176,6 @@ class DotGrowth {
     }
     std::sort(claims.begin(), claims.end(),
               [](const Claim& a, const Claim& b) { return a.distance_px < b.distance_px; });
-    if (anew) {
-      labels = Labels(labels.rows(), labels.cols(), -1);
-    }
     bool grown = false;
     for (const Claim& claim : claims) {
       char& is_taken = taken[static_cast<std::size_t>(claim.spot)];
@@ -309,14 +289,11 @@ class DotPrint {
       done = !best.ambiguous &&
              static_cast<double>(best.score) >= (better ? nearly_all : min_explained) * most;
     }
-    const auto enough = [&] {
-      return static_cast<double>(number_of(best.labels)) >= min_explained * most;
-    };
-    if (best.score <= 0 || best.ambiguous) {
-      return best.score > 0 && enough() ? best : Answer{};
-    }
-    growth.drop_strangers(best.labels, max_off);
-    return enough() ? best : Answer{};
+    // half a dot beside a shadow, or the shadow itself
+    growth.drop_misfits(best.labels, std::fmax(max_off, 8 * growth.usual_misfit(best.labels)));
+    const bool enough =
+        static_cast<double>(number_of(best.labels)) >= min_explained * most && best.score > 0;
+    return enough ? best : Answer{};
   }
 
  private:

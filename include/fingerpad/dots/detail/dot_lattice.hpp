@@ -103,22 +103,6 @@ inline Places trimmed(const Places& dots) {
   return window_of(dots, top, left, bottom - top, right - left, no_place());
 }
 
-/// Median distance of neighbours in a row or column; 0 if there are none.
-inline double pitch_of(const Places& dots) {
-  std::vector<double> lengths;
-  for (Index i = 0; i < dots.rows(); ++i) {
-    for (Index j = 0; j < dots.cols(); ++j) {
-      for (const Place& next : {dots.contains(i + 1, j) ? dots(i + 1, j) : no_place(),
-                                dots.contains(i, j + 1) ? dots(i, j + 1) : no_place()}) {
-        if (is_finite(next - dots(i, j))) {
-          lengths.push_back(norm(next - dots(i, j)));
-        }
-      }
-    }
-  }
-  return lengths.empty() ? 0 : median(lengths);
-}
-
 /// Median distance of a dot from the midpoint of its neighbours on both sides, in pitches. It
 /// rejects random spots, which can be given rows and columns but are not regular.
 inline double unevenness(const Places& dots) {
@@ -156,22 +140,18 @@ inline Places lattice_of(const std::vector<Place>& spots) {
   if (!(area > 0)) {
     return {};
   }
-  double up = 0, below = 0, before = 0, after = 0;
+  double rows = 0, cols = 0;  // to each side of the seed
   for (const Place& spot : spots) {
     const Place off = spot - seed;
-    const double row = (right.x * off.y - right.y * off.x) / area;
-    const double col = (off.x * down.y - off.y * down.x) / area;
-    up = (std::max)(up, -row);
-    below = (std::max)(below, row);
-    before = (std::max)(before, -col);
-    after = (std::max)(after, col);
+    rows = (std::max)(rows, std::abs(right.x * off.y - right.y * off.x) / area);
+    cols = (std::max)(cols, std::abs(off.x * down.y - off.y * down.x) / area);
   }
   // a bent grid reaches further
   const auto extent = [&](double side) {
     return static_cast<Index>((std::min)(1.25 * side + 2, max_extent));
   };
-  const DotIndex first = {extent(up), extent(before)};
-  Places regular(first.row + 1 + extent(below), first.col + 1 + extent(after), no_place());
+  const DotIndex first = {extent(rows), extent(cols)};
+  Places regular(2 * first.row + 1, 2 * first.col + 1, no_place());
   for (Index i = 0; i < regular.rows(); ++i) {
     for (Index j = 0; j < regular.cols(); ++j) {
       regular(i, j) = seed + static_cast<double>(i - first.row) * down +

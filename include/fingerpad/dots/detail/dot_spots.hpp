@@ -24,7 +24,6 @@ namespace detail {
 /// Appearance of spots.
 struct SpotLook {
   double radius_px = 0;
-  double max_residual = 0.35;                       ///< of the step from background to dot
   double edge_px = 2;                               ///< half width of the blurred edge
   bool bright = false;                              ///< brighter than the background
   double min_contrast = 0.08;                       ///< share of the light that is missing
@@ -103,8 +102,11 @@ class SpotFinder {
   }
 
   bool is_dot(const DiscFit& fit) const {
-    return fit.good && fit.contrast >= look_.min_contrast && fit.light > min_light &&
-           fit.residual < look_.max_residual * fit.contrast * fit.light;
+    constexpr double max_residual = 0.55;  // of the step from background to dot: ellipses are dots
+    constexpr double max_slope = 0.15;     // of the light, over a radius: a dot is half covered
+    return fit.good && fit.contrast >= look_.min_contrast &&
+           norm(fit.slope) * look_.radius_px / coarse_ < max_slope && fit.light > min_light &&
+           fit.residual < max_residual * fit.contrast * fit.light;
   }
 
   /// Mean over squares of `factor` pixels. Incomplete squares at the right and bottom are dropped.
@@ -174,6 +176,7 @@ class SpotFinder {
     std::copy_n(w.begin(), (std::min)(small.channels(), 3), sum.begin());
     sum(sum.cols - 1) = offset();
     cv::transform(levels, light, sum);
+    cv::min(light, 2 * cv::mean(light)[0], light);  // a reflection has no dark ring
     const cv::Mat near = blurred(light, 0.5 * radius), wide = blurred(light, 1.2 * radius);
     cv::Mat_<float> response(light.size());
     cv::subtract(wide, near, response);

@@ -223,6 +223,11 @@ inline Table<double> spacings_px(const Places& dots) {
   return spacing;
 }
 
+/// Median distance of a dot to the nearest of its neighbours; 0 if there are none.
+inline double pitch_of(const Places& dots) {
+  return dots.cells().empty() ? 0.0 : median(spacings_px(dots).cells());
+}
+
 /// The regular grid with the mean steps along rows and columns of `dots`, which must hold at least
 /// one step of each.
 inline Places flattened(const Places& dots) {
