@@ -100,6 +100,15 @@ TEST_CASE("a round contact is found where it is", "[contact_region]") {
     CHECK(std::hypot(r.center_mm.x - film.x_mm, r.center_mm.y - film.y_mm) < 0.05);
     CHECK(r.center_mm.z == Approx(film.top_mm).margin(1e-3));
     CHECK(r.depth_mm == Approx(13 - film.top_mm).margin(1e-3));
+    // without its edge, a contact may end anywhere within a ring of where it seems to
+    auto test = with_gap(with_ring(ring_px), 0);
+    test.places_edge = false;
+    const ContactResult plain = find(camera, depth, test).result;
+    if (plain.regions == 1) {
+      const double ring_mm = static_cast<double>(ring_px) * camera.pitch_mm;
+      const double perimeter_mm = 2 * std::sqrt(std::numbers::pi * plain.area_mm2);
+      CHECK(plain.area_sd_mm2 == Approx(perimeter_mm * ring_mm / std::sqrt(3)).epsilon(0.35));
+    }
   };
   for (const Case& c : cases) {
     test::RoundContact contact;

@@ -220,6 +220,7 @@ TEST_CASE("published depth: mean, quotient and bisection of each pixel", "[publi
     for (std::size_t k = 0; k < frame.red.cells.size(); k += 7) {
       free_frame.red.cells[k] = test::stored<Pixel>(k % 2 == 0 ? 0 : 255);
       frame.green.cells[k] = test::stored<Pixel>(k % 3 == 0 ? 0 : 255);
+      frame.red.cells[(k + 3) % frame.red.cells.size()] = test::stored<Pixel>(1);
     }
     published::DepthEstimator<> estimate(o, free_frame.red, free_frame.green, free);
     Image<double> depth(pad.rows, pad.cols);

@@ -188,6 +188,15 @@ TEST_CASE("published object motion: the contact reference dot") {
   SECTION("of equal displacements the first in the order of rows") {
     CHECK(motion(dots, contact).reference == DotIndex{1, 1});
   }
+  SECTION("the one that has moved most, whichever it is") {
+    for (Index k = 0; k < 25; ++k) {
+      const DotIndex most = {1 + k / 5, 1 + k % 5};
+      auto moved = dots;
+      moved(most.row, most.col).z -= 1;
+      published::ObjectMotion fresh(free);
+      CHECK(fresh(moved, contact).reference == most);
+    }
+  }
   SECTION("never on the border of the grid, which lacks neighbours") {
     dots(0, 3).z -= 1;
     dots(3, 6).z -= 1;

@@ -159,6 +159,13 @@ TEST_CASE("published circle through three points", "[published]") {
     CHECK(published::section_curvature<double>(sphere, 20, 20, k * std::numbers::pi / 18, 10,
                                                0.1) == Approx(0.05).epsilon(1e-9));
   }
+  for (const double center_mm : {0.0, 1.0, -4.0}) {  // of the circle, beside the middle
+    const auto on_circle = [&](double u) { return std::sqrt(400 - square(u - center_mm)); };
+    CHECK(published::circle_center_curvature(2.0, on_circle(-2), on_circle(0), on_circle(2)) ==
+          Approx(0.05).epsilon(1e-9));
+    CHECK(published::circle_center_curvature(2.0, -on_circle(-2), -on_circle(0), -on_circle(2)) ==
+          Approx(-0.05).epsilon(1e-9));
+  }
   CHECK(std::isnan(published::section_curvature<double>(level, 20, 20, 0.3, 10, 0.1)));
   CHECK(std::isnan(published::section_curvature<double>(sphere, 2, 20, 1.5, 10, 0.1)));
 }

@@ -119,6 +119,7 @@ TEST_CASE("published six-axis force: contour lines every 0.2 mm, of each line it
   int cut = 0;
   for (Index i = 0; i < 72; ++i) {
     const double end = wrench.node(i, 70).z;
+    CHECK(end == Approx(8.5).margin(0.1));  // where it touches
     Index own = 0;
     for (Index j = 0; j <= 70; ++j) {
       const double contour = 0.2 * static_cast<double>(j);

@@ -249,6 +249,20 @@ TEST_CASE("slides: a frame is stored by its distance from the newest stored one"
   CHECK(out.reference_age == 1);
 }
 
+TEST_CASE("slides: the reference dot may be any but those of the border", "[published]") {
+  const StickRatioOptions options = {.S2 = 0, .S3 = 0};
+  const auto moved = grid_of([](Index, Index) { return Point2<double>{3, 0}; });
+  for (Index k = 0; k < 81; ++k) {
+    const DotIndex only = {k / 9, k % 9};
+    const bool is_inside = only.row % 8 != 0 && only.col % 8 != 0;
+    ContactFlags contact(9, 9);
+    contact(only.row, only.col) = 1;
+    Printed ratio(9, 9, options);
+    (void)ratio(at_rest(), contact);
+    CHECK(ratio(moved, contact).reference_dot == (is_inside ? only : DotIndex{4, 4}));
+  }
+}
+
 TEST_CASE("slides: the reference dot is one of the stick region", "[published]") {
   // the columns on both sides and the dot in the middle stick; the others stay behind
   const auto sticks = [](Index i, Index j) { return j < 3 || j > 5 || (i == 4 && j == 4); };

@@ -3,6 +3,7 @@
 #include "overview.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -39,11 +40,12 @@ struct Extremes {
     const char* title;  ///< column in summary.csv
     double value = std::numeric_limits<double>::quiet_NaN();
   };
-  std::vector<Column> columns = {
-      {"depth_max_mm", false, "depth_max_mm"},  {"contact_area_mm2", false, "contact_area_max_mm2"},
-      {"stick_ratio", true, "stick_ratio_min"}, {"normal_force_n", false, "normal_force_max_n"},
-      {"wrench_fz_n", true, "wrench_fz_min_n"}, {"preslip", false, "preslip"}};
-
+  std::array<Column, 6> columns = {{{"depth_max_mm", false, "depth_max_mm"},
+                                    {"contact_area_mm2", false, "contact_area_max_mm2"},
+                                    {"stick_ratio", true, "stick_ratio_min"},
+                                    {"normal_force_n", false, "normal_force_max_n"},
+                                    {"wrench_fz_n", true, "wrench_fz_min_n"},
+                                    {"preslip", false, "preslip"}}};
   replay::Doubts doubts;
 
   void see(const std::string& name, const std::string& cell) {
