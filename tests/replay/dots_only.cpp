@@ -321,10 +321,10 @@ TEST_CASE("thresholds of the stick ratio come from sensor.json") {
 TEST_CASE("dots.csv serves a dots-only recording, too") {
   const DotGrid truth = grid_of({4, 3}, 30, 0);
   const cv::Mat plain(frame_size, CV_8UC3, cv::Scalar(90, 120, 100));
-  const DotRecording recording(std::vector<cv::Mat>{plain, plain, plain});
+  const DotRecording recording(std::vector<cv::Mat>(4, plain));
   std::ofstream file(recording.folder() / "dots.csv");
   file << "frame,row,col,x_px,y_px\n";
-  for (int frame = 0; frame < 3; ++frame) {
+  for (int frame = 0; frame < 4; ++frame) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 4; ++j) {
         file << frame << ',' << i << ',' << j << ',' << truth(i, j)[0] + 3 * frame << ','
@@ -335,8 +335,8 @@ TEST_CASE("dots.csv serves a dots-only recording, too") {
   file.close();
   REQUIRE(recording.complaint().empty());
   const auto rows = table_of(recording.out() / "frames.csv");
-  CHECK(rows[2].at("dots_in_contact") == "12");
-  CHECK(std::stod(rows[2].at("stick_ratio")) == 1);
+  CHECK(rows[3].at("dots_in_contact") == "12");
+  CHECK(std::stod(rows[3].at("stick_ratio")) == 1);
 }
 
 TEST_CASE("the sensor.json of a dots-only recording is refused with the key's name") {

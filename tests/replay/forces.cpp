@@ -149,7 +149,7 @@ TEST_CASE("replay: a number is uncertain for a small full scale", "[wrench]") {
     });
   };
   CHECK(uncertain(30) == 0);
-  CHECK(uncertain(0.1) == 10);  // all but the first, in which nothing touches
+  CHECK(uncertain(0.1) == 11);  // the first too, in which nothing touches
 }
 
 TEST_CASE("replay: what the force needs may be missing", "[wrench]") {
