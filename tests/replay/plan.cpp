@@ -38,7 +38,8 @@ TEST_CASE("calibrate plan: standard deviations of finite-element pads", "[calibr
     if (scene.cap.mooney_share > 0) {
       continue;
     }
-    const WrenchOptions options = {.cap = scene.cap, .modulus_n_per_mm = scene.modulus_n_per_mm};
+    const fingerpad::WrenchOptions options = {.cap = scene.cap,
+                                              .modulus_n_per_mm = scene.modulus_n_per_mm};
     const test::SeenRim rim(scene, options, 0.06, 1);
     auto plan = plan_of(scene);
     for (const auto& mark : rim.marks) {
