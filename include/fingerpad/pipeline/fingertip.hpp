@@ -206,7 +206,7 @@ class Fingertip {
       measure_light(touch);
     }
     if (dots_) {
-      dots_->conclude(touch, wrench_.has_value());
+      dots_->judge_slip(touch, wrench_.has_value());
     }
     touch.status = judge(touch, pressure_mpa);
     return touch;

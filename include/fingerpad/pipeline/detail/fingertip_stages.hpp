@@ -238,7 +238,7 @@ struct FingertipDots {
 
   /// Decides whether the object slides, which needs the forces, and computes its motion from the
   /// dots that stick.
-  void conclude(FingertipResult& touch, bool has_six_axes) {
+  void judge_slip(FingertipResult& touch, bool has_six_axes) {
     touch.slip = friction(load_of(touch, has_six_axes), touch.stick);
     const LazyView slips(seen.rows, seen.cols,
                          [&](Index i, Index j) { return !touch.slip.holds(stick.states()(i, j)); });
