@@ -13,8 +13,6 @@ many.py PROGRAM PRESS [--mpirun FILE] [--recordings N] [--kills N]
    recording is processed again. With --kills 1, one process is killed as the leader only, and three
    ranks as a unit, a rank and all.
 3. A full disk and missing recordings are reported and survived.
-4. Bootstrap and Monte Carlo write the same bytes from one process and from several ranks, and agree
-   with the standard errors of the fits.
 """
 import argparse
 import csv

@@ -26,7 +26,6 @@ namespace {
 using Map = cv::Mat_<double>;
 
 // --- light
-// ----------------------------------------------------------------------------------------
 
 /// Sixty colours at known depths, each the mean of 16 frames of a block of 16 x 16 pixels with shot
 /// noise of a grey level.
@@ -140,7 +139,6 @@ Trial contact() {
 }
 
 // --- rim
-// ---------------------------------------------------------------------------------
 
 /// Mean apexes of a free pad at four pressures, 0.005 mm of noise each.
 Trial rim() {
@@ -172,7 +170,6 @@ Trial rim() {
 }
 
 // --- forces
-// ---------------------------------------------------------------------------------------
 
 using Sample = fingerpad::ForceSample<double>;
 using Samples = std::vector<Sample>;
@@ -229,7 +226,6 @@ Trial moment() {
 }
 
 // --- foam
-// -----------------------------------------------------------------------------------------
 
 /// Sixty windows of 3 x 3 taxels at rest, 3 counts of noise.
 Trial taxels() {
