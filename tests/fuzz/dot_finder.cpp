@@ -72,7 +72,7 @@ void try_finder(Input& in) {
   }
   Places dots(finder.rows(), finder.cols()), again(finder.rows(), finder.cols());
   for (int frame = 0; frame < 3; ++frame) {
-    const cv::Mat now = picture(in, rows, cols, pitch, radius, in.whole(0, 8));
+    const cv::Mat now = picture(in, rows, cols, pitch, radius, static_cast<double>(in.whole(0, 8)));
     DotFinder copy = finder;
     auto to = dots.view(), second = again.view();
     const DotResult r = finder(now, to), same = copy(now, second);
