@@ -26,7 +26,6 @@ static_assert(std::same_as<scalar_real_t<float>, float>);
 static_assert(std::same_as<scalar_real_t<Digits50>, Digits50>);
 static_assert(std::same_as<scalar_real_t<Tangent<float>>, float>);
 
-
 // Functions without mathematics are usable at compile time.
 static_assert(value(2.5) == 2.5 && square(3.0f) == 9.0f);
 static_assert(epsilon<float>() == (std::numeric_limits<float>::epsilon)());

@@ -31,12 +31,12 @@
 
 using namespace fingerpad;
 using test::Digits50;
-using test::Tangent;
 using test::Frame;
 using test::Image;
 using test::mirrored;
 using test::Pad;
 using test::refusal;
+using test::Tangent;
 using test::transposed;
 
 namespace {

@@ -365,8 +365,7 @@ TEST_CASE("patterns larger than any are refused by name", "[mistakes]") {
     }
   }
   const std::string too_many = "cells in memory = 128000000, must be <= 100000000";
-  CHECK(refusal([] { const StickRatio<> r(1000, 2000); }) ==
-        "StickRatio: " + too_many);
+  CHECK(refusal([] { const StickRatio<> r(1000, 2000); }) == "StickRatio: " + too_many);
 }
 
 namespace {

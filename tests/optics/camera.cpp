@@ -19,8 +19,8 @@ using test::any_offset;
 using test::any_tangent;
 using test::as;
 using test::Digits50;
-using test::Tangent;
 using test::near;
+using test::Tangent;
 
 namespace {
 

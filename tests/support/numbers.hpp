@@ -44,7 +44,9 @@ struct Tangent {
   friend Tangent operator-(const Tangent& a) { return {-a.v, -a.d}; }
   friend Tangent operator+(const Tangent& a, const Tangent& b) { return {a.v + b.v, a.d + b.d}; }
   friend Tangent operator-(const Tangent& a, const Tangent& b) { return {a.v - b.v, a.d - b.d}; }
-  friend Tangent operator*(const Tangent& a, const Tangent& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+  friend Tangent operator*(const Tangent& a, const Tangent& b) {
+    return {a.v * b.v, a.d * b.v + a.v * b.d};
+  }
   friend Tangent operator/(const Tangent& a, const Tangent& b) {
     return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v};
   }

@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
