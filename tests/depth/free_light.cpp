@@ -44,6 +44,7 @@ double mean_error_mm(const Image<float>& found, const Image<double>& truth) {
 struct Errors {
   double green, balance;  ///< shares
   double in_sd;           ///< of the balance
+  double height;          ///< of the pad, found, a share of the reference's
 };
 
 Errors errors_of(const FreeLight<float>& light,
@@ -52,7 +53,7 @@ Errors errors_of(const FreeLight<float>& light,
   const auto found = light(frame.red, frame.green);
   REQUIRE(found.has_value());
   const double off = std::log(found->gains.red / found->gains.green / (truth.red / truth.green));
-  return {found->gains.green / truth.green - 1, off, off / found->balance_sd};
+  return {found->gains.green / truth.green - 1, off, off / found->balance_sd, found->height};
 }
 
 constexpr LightGains changes[] = {{1, 1}, {0.97, 0.97}, {0.9, 0.9}, {1, 1.01}, {1, 1.03}, {1.1, 1}};
@@ -72,6 +73,7 @@ TEST_CASE("a free frame tells its light, whatever the height of the pad", "[free
       CAPTURE(height, gains.green, gains.red);
       CHECK(std::abs(e.green) < 0.004);
       CHECK(std::abs(e.balance) < 0.0015);
+      CHECK(e.height == Approx(height).margin(0.001));
     }
   }
 }

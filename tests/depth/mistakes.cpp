@@ -178,6 +178,27 @@ TEST_CASE("mistakes with the reference are refused with their likely cause", "[m
   }
 }
 
+TEST_CASE("a free shape is refused where more than half of its middle lies too deep",
+          "[mistakes]") {
+  for (const double share : {0.35, 0.65}) {
+    Given given;
+    // the share of the pad's middle, a disc of a quarter of its radius, that lies outside of r
+    const auto& c = given.pad.camera;
+    const double middle_mm = given.pad.base_radius_mm() / 4,
+                 r_mm = middle_mm * std::sqrt(1 - share);
+    each_pixel(given, [&](Index i, Index j, double& l) {
+      const double x = (static_cast<double>(j) - c.center_x_px) * c.pitch_mm;
+      const double y = (static_cast<double>(i) - c.center_y_px) * c.pitch_mm;
+      l = std::hypot(x, y) > r_mm && std::hypot(x, y) < 1.2 * middle_mm
+              ? 1.01 * given.pad.fluid.max_depth_mm
+              : l;
+    });
+    CAPTURE(share);
+    const bool is_too_deep = said_of(given).find("raise max_depth_mm") != std::string::npos;
+    CHECK(is_too_deep == (share > 0.5));
+  }
+}
+
 TEST_CASE("a frame that is not of this pad and lamp is told", "[mistakes]") {
   const Pad pad = fine_pad();
   auto estimator = pad.estimator<float>();

@@ -23,15 +23,17 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
     }
   }
   depth(3, 4) = std::nan("");
-  test::Image<Point2<double>> dots(1, 7);
+  test::Image<Point2<double>> dots(1, 9);
   dots(0, 0) = {1.25, 2.5};
   dots(0, 1) = {0, 0};
   dots(0, 2) = {3, 3};      // needs no missing pixel
   dots(0, 3) = {3.5, 2.5};  // needs one
   dots(0, 4) = {-0.01, 1};  // outside
   dots(0, 5) = {std::nan(""), 1};
-  dots(0, 6) = {4, 2};  // the last column
-  Dots out(1, 7);
+  dots(0, 6) = {4, 2};    // the last column
+  dots(0, 7) = {4.5, 2};  // beyond it
+  dots(0, 8) = {2, 3.5};  // beyond the last row
+  Dots out(1, 9);
   CHECK(spatial_dots(camera, dots, depth, out) == 4);
   const auto expected = point_at(camera, 2.5, 1.25, 10 + 1.25 - 0.3125);
   CHECK(out(0, 0).x == Approx(expected.x));
@@ -39,23 +41,23 @@ TEST_CASE("spatial dots: depth is read between pixels, at the dot's own pixel (E
   CHECK(out(0, 0).z == Approx(expected.z));
   CHECK(out(0, 2).z == Approx(10.75));
   CHECK(out(0, 6).z == Approx(10));
-  for (const Index missing : {3, 4, 5}) {
+  for (const Index missing : {3, 4, 5, 7, 8}) {
     CHECK(std::isnan(out(0, missing).x));
     CHECK(std::isnan(out(0, missing).z));
   }
-  Dots other_size(2, 7);
+  Dots other_size(2, 9);
   CHECK(spatial_dots(camera, dots, depth, other_size) == -1);
-  cv::Mat_<cv::Vec3f> image(1, 7);
+  cv::Mat_<cv::Vec3f> image(1, 9);
   CHECK(spatial_dots(camera, dots, depth, image) == 4);
   CHECK(static_cast<double>(image(0, 0)[2]) == Approx(expected.z));
 
   test::Flags mask(4, 5, 0);
   mask(3, 1) = 255;
   mask(0, 0) = 1;
-  test::Flags touching(1, 7, 9);
+  test::Flags touching(1, 9, 9);
   CHECK(contact_at_dots(dots, mask, touching));
-  CHECK(touching.cells == std::vector<unsigned char>{1, 1, 0, 0, 0, 0, 0});
-  Flags turned_size(7, 1);
+  CHECK(touching.cells == std::vector<unsigned char>{1, 1, 0, 0, 0, 0, 0, 0, 0});
+  Flags turned_size(9, 1);
   CHECK(!contact_at_dots(dots, mask, turned_size));
 }
 

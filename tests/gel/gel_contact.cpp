@@ -243,6 +243,21 @@ TEST_CASE("gel contact: bad pixels say nothing, nor do they spread", "[gel_conta
         FrameStatus::not_of_this_pad);
 }
 
+TEST_CASE("gel contact: bands of light are those of the pixels that can be read", "[gel_contact]") {
+  Scene scene;
+  GelContact contact(scene.free(2));
+  cv::Mat frame = scene.frame();
+  for (int i = 0; i < frame.rows; ++i) {
+    frame.row(i) *= 1 + 0.08 * std::sin(2 * pi * i / 60);
+  }
+  frame({0, 80, 200, 80}).setTo(cv::Scalar::all(0));  // more than half of these rows
+  const GelResult found = find(contact, frame);
+  CHECK(found.contact_px == 0);
+  for (int row = 22; row < 38; ++row) {
+    CHECK(contact.difference()(row, 65) < 0.02F);
+  }
+}
+
 TEST_CASE("gel contact: what is known reaches all four edges of the frame", "[gel_contact]") {
   Scene scene;
   GelContact contact(scene.free(1));
