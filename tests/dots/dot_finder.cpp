@@ -466,6 +466,30 @@ TEST_CASE("dots: spots that fit badly are dropped whichever of them comes first"
   }
 }
 
+TEST_CASE("dots: a line of strange spots beside the print takes no label") {
+  // three dots of the first row are hidden, and as many strange spots lie off it in a line
+  detail::Places base(6, 7, detail::no_place());
+  std::vector<detail::Place> spots;
+  for (Index i = 0; i < 6; ++i) {
+    for (Index j = 0; j < 7; ++j) {
+      base(i, j) = {10.0 * static_cast<double>(j), 10.0 * static_cast<double>(i)};
+      const bool strange = i == 0 && j >= 2 && j <= 4;
+      spots.push_back(base(i, j) + detail::Place{0, strange ? -3.2 : 0.0});
+    }
+  }
+  for (const bool turned : {false, true}) {
+    for (auto& places : {&base.cells(), &spots}) {
+      for (detail::Place& place : *places) {
+        place = turned ? detail::Place{} - place : place;
+      }
+    }
+    const detail::SpotMap map(spots);
+    const auto labels = detail::DotGrowth(base, map).from({3, 3}, {0, 0});
+    CHECK(detail::number_of(labels) == 39);
+    CHECK(labels(0, 3) == -1);
+  }
+}
+
 TEST_CASE("dots: what lies in a grid but is faint is not taken for the dots") {
   // The blocks of a compressed image; there are more of them than dots.
   Print print;

@@ -107,21 +107,28 @@ class DotGrowth {
   static constexpr double gate = 0.35;           // spot to predicted position, while growing
   static constexpr double largest_misfit = 0.3;  // spot to predicted position, when grown
 
-  /// Position of a dot that moves like its neighbours.
-  Place expected(const Labels& labels, Index row, Index col) const {
+  /// Position of a dot that moves like its neighbours, or like those in other rows or columns.
+  Place expected(const Labels& labels, Index row, Index col, bool by_row, bool by_col) const {
     return base_(row, col) + by_neighbours(labels.rows(), labels.cols(), row, col,
                                            spacing_px_(row, col), [&](Index i, Index j) {
-                                             return labels(i, j) >= 0
+                                             return labels(i, j) >= 0 && (by_row || i != row) &&
+                                                            (by_col || j != col)
                                                         ? spots_[labels(i, j)] - base_(i, j)
                                                         : no_place();
                                            });
   }
 
+  /// A line of strange spots beside the print agrees with itself: labels at the border are judged
+  /// by the lines within.
   double misfit(const Labels& labels, Index row, Index col) const {
     if (labels(row, col) < 0) {
       return 0;
     }
-    const Place where = expected(labels, row, col);
+    const auto inside = [&](Index down, Index right) {
+      return has(labels, row + down, col + right) && has(labels, row - down, col - right);
+    };
+    Place where = expected(labels, row, col, inside(1, 0), inside(0, 1));
+    where = is_finite(where) ? where : expected(labels, row, col, true, true);
     return is_finite(where) ? norm(spots_[labels(row, col)] - where) / spacing_px_(row, col)
                             : std::numeric_limits<double>::infinity();
   }
@@ -167,7 +174,8 @@ class DotGrowth {
     for (Index i = 0; i < labels.rows(); ++i) {
       for (Index j = 0; j < labels.cols(); ++j) {
         if (labels(i, j) < 0 && is_finite(base_(i, j)) && neighbours(labels, i, j) >= wanted) {
-          const auto hit = spots_.nearest(expected(labels, i, j), gate * spacing_px_(i, j));
+          const auto hit =
+              spots_.nearest(expected(labels, i, j, true, true), gate * spacing_px_(i, j));
           if (hit.spot >= 0) {
             claims.push_back({hit.distance_px, i, j, hit.spot});
           }
@@ -188,11 +196,14 @@ class DotGrowth {
     return grown;
   }
 
+  static bool has(const Labels& labels, Index row, Index col) {
+    return labels.contains(row, col) && labels(row, col) >= 0;
+  }
   static int neighbours(const Labels& labels, Index row, Index col) {
     int count = 0;
     for (Index i = row - 1; i <= row + 1; ++i) {
       for (Index j = col - 1; j <= col + 1; ++j) {
-        count += labels.contains(i, j) && labels(i, j) >= 0 ? 1 : 0;
+        count += has(labels, i, j) ? 1 : 0;
       }
     }
     return count;
