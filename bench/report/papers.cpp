@@ -8,6 +8,7 @@
 //   papers/six_axis.hpp, rim.hpp      shapes, frames and side dots of these membranes
 //   papers/look_up.hpp                contacts of these membranes
 //   papers/slippage.hpp               dots of these membranes
+//   papers/courses.hpp                courses of three figures over their steps
 //   papers/preslip.hpp                simulated foam fingers
 //   papers/rates.hpp                  time
 //   papers/forms.hpp                  printed forms that no other table has
@@ -17,6 +18,7 @@
 #include <iostream>
 #include <string>
 
+#include "papers/courses.hpp"
 #include "papers/fluid.hpp"
 #include "papers/forms.hpp"
 #include "papers/location.hpp"
@@ -51,6 +53,9 @@ int main(int argc, char** argv) {
   }
   section("Forces", look_up_section);
   section("Slippage", slippage_section);
+  if (wanted("courses")) {
+    print_courses(std::cout);
+  }
   section("Pre-slip", preslip_section);
   if (wanted("forms")) {
     print_forms(std::cout);

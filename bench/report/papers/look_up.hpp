@@ -90,7 +90,11 @@ inline std::vector<double> default_normal(const std::string& scene, test::Contac
 struct ShearErrors {
   std::vector<double> errors;
   double largest = 0;
+  std::vector<double> found, truth;  ///< of each step; a force with the sign of its x
 };
+inline double signed_length(const fingerpad::Point2<double>& p) {
+  return std::copysign(std::hypot(p.x, p.y), p.x);
+}
 inline ShearErrors tangential(const std::vector<std::string>& from,
                               const std::string& on,
                               test::ContactMeasure measure,
@@ -108,6 +112,8 @@ inline ShearErrors tangential(const std::vector<std::string>& from,
     const auto& truth = s.tangential_force_n;
     out.errors.push_back(std::hypot(f.x - truth.x, f.y - truth.y));
     out.largest = (std::max)(out.largest, std::hypot(truth.x, truth.y));
+    out.found.push_back(signed_length(f));
+    out.truth.push_back(signed_length(truth));
   }
   return out;
 }
@@ -124,7 +130,9 @@ inline ShearErrors moment(const std::vector<std::string>& from,
   const Shear shear(map);
   ShearErrors out;
   for (const auto& s : samples_of({on}, measure, dots)) {
-    out.errors.push_back(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm - s.moment_n_mm);
+    out.found.push_back(shear(s.measure, {0, 0}, s.rotation_rad).moment_n_mm);
+    out.truth.push_back(s.moment_n_mm);
+    out.errors.push_back(out.found.back() - s.moment_n_mm);
     out.largest = (std::max)(out.largest, std::abs(s.moment_n_mm));
   }
   return out;
