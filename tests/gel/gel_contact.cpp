@@ -305,6 +305,24 @@ TEST_CASE("gel contact: numbers are those of the mask, whatever the cells", "[ge
   }
 }
 
+TEST_CASE("gel contact: what an old gel keeps of a press is no contact", "[gel_contact]") {
+  Scene scene;
+  scene.camera.contrast = 4;  // a steep gel, of which some cells are saturated in a press
+  const double ball_mm = GENERATE(2.0, 4.0);
+  scene.contact = BallOnGel<>(GelPad{.ball_mm = ball_mm});
+  GelContact contact(scene.free(4)), never_pressed(scene.free(4));
+  scene.contact.drag(0.5, {-1.7, 1.2});
+  const cv::Mat pressed = scene.frame();
+  cv::Mat kept;
+  cv::addWeighted(scene.free(1)[0], 0.96, pressed, 0.04, 0, kept);
+  CHECK(find(never_pressed, kept).in_contact());
+  CHECK(find(contact, pressed).in_contact());
+  CHECK_FALSE(find(contact, kept).in_contact());
+  scene.contact = BallOnGel<>(GelPad{});  // a light touch at the same place is found
+  scene.contact.drag(0.05, {-1.7, 1.2});
+  CHECK(contact(scene.frame()).contact_px > 4000);
+}
+
 TEST_CASE("gel contact: holes are filled, specks dropped", "[gel_contact]") {
   const cv::Mat free(80, 90, CV_8UC1, 100);
   GelOptions options{

@@ -43,19 +43,24 @@ struct GelOptions {
   double max_gap_px = 28;   ///< gaps in a contact up to this width are closed, by default two dots;
                             ///< in [0, 32 cell_px]
   int min_region_px = 800;  ///< smaller regions are dropped; >= 0
+  /// An old gel keeps this share of a press: a cell must differ by more than this share of the
+  /// largest difference of the contacts that it has been part of; in [0, 1).
+  double kept_share = 0.05;
 };
 
 /// Says which value is out of range; "" if none is.
 inline std::string check(const GelOptions& options) {
   const double cell = options.cell_px;
   constexpr Range share = {.min = 0, .max = 1, .above_min = true, .below_max = true};
-  return check("GelOptions", {{"cell_px", options.cell_px, within(1, 16)},
-                              {"smoothing_px", options.smoothing_px, within(cell / 2, 16 * cell)},
-                              {"dot_px", options.dot_px, within(0, 16 * cell)},
-                              {"dot_contrast", options.dot_contrast, share},
-                              {"min_difference", options.min_difference, share},
-                              {"max_gap_px", options.max_gap_px, within(0, 32 * cell)},
-                              {"min_region_px", options.min_region_px, not_negative}});
+  return check("GelOptions",
+               {{"cell_px", options.cell_px, within(1, 16)},
+                {"smoothing_px", options.smoothing_px, within(cell / 2, 16 * cell)},
+                {"dot_px", options.dot_px, within(0, 16 * cell)},
+                {"dot_contrast", options.dot_contrast, share},
+                {"min_difference", options.min_difference, share},
+                {"max_gap_px", options.max_gap_px, within(0, 32 * cell)},
+                {"min_region_px", options.min_region_px, not_negative},
+                {"kept_share", options.kept_share, Range{.min = 0, .max = 1, .below_max = true}}});
 }
 
 struct [[nodiscard]] GelResult {
@@ -105,6 +110,8 @@ class GelContact {
     for (cv::Mat_<float>* image : {&weight_, &both_, &grey_, &share_, &difference_, &imprint_}) {
       image->create(inner_.size());
     }
+    kept_ = cv::Mat_<float>::zeros(inner_.size());
+    mask_.create(inner_.size());
     for (cv::Mat_<cv::Vec3f>* image : {&relative_, &gains_, &trial_}) {
       image->create(inner_.size());
     }
@@ -113,6 +120,7 @@ class GelContact {
     cells_.reserve(values_.capacity());
     learn(free_frames);
     (void)(*this)(free_frames.front());  // OpenCV allocates the other images
+    kept_.setTo(0);
   }
   GelContact(GelContact&&) = default;
 
@@ -134,7 +142,7 @@ class GelContact {
     average(imprint_);
     return imprint_;
   }
-  /// Cells whose difference exceeds it are contact.
+  /// Cells whose difference exceeds it, and what earlier contacts may have left, are contact.
   double threshold() const { return threshold_; }
 
   /// Finds the contact in a frame. A frame of another size or type than the free ones is refused.
@@ -148,6 +156,11 @@ class GelContact {
       // a contact leaves most of the border free; another lamp changes the border most
       result = found(true);
       result.status = is_mostly_free(true) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    }
+    for (int k = 0; k < inner_.area() && result.ok(); ++k) {
+      const float seen = is_finite(difference_(k)) ? difference_(k) : 1;  // black or saturated
+      const float kept = static_cast<float>(options_.kept_share) * seen;
+      kept_(k) = mask_(k) > 0 && kept > kept_(k) ? kept : kept_(k);
     }
     return result;
   }
@@ -405,7 +418,9 @@ class GelContact {
   /// cell, closed over gaps, without holes and small regions.
   GelResult found(bool by_border) {
     compare(by_border);
-    cv::compare(difference_, threshold_, mask_, cv::CMP_GT);
+    for (int k = 0; k < inner_.area(); ++k) {
+      mask_(k) = difference_(k) > (std::max)(static_cast<float>(threshold_), kept_(k)) ? 255 : 0;
+    }
     cv::morphologyEx(mask_, mask_, cv::MORPH_OPEN, cv::Mat());
     wide_.setTo(0);  // wider than the frame, or closing would draw a contact to the frame's edge
     mask_.copyTo(wide_(inner_));
@@ -455,7 +470,7 @@ class GelContact {
   cv::Mat closing_, dot_, half_, small_, colours_;
   cv::Mat_<cv::Vec3f> now_, free_, relative_, smooth_, gains_, trial_;
   cv::Mat_<float> weight_, free_weight_, free_seen_, both_, share_, grey_, around_, difference_,
-      imprint_;
+      imprint_, kept_;
   cv::Mat_<unsigned char> mask_, wide_;
   std::vector<std::vector<cv::Point>> outlines_;
   std::vector<float> values_;
