@@ -112,10 +112,10 @@ def pad(table, truth, pictures):
 def gel(table, pictures):
     slips = [f for f, s in zip(table["frame"], table["slip"]) if s == 1]
     chart("Slide of the contact past the dots: " + (f"it slips from frame {slips[0]:.0f} on" if slips else "no slip"),
-          [("evidence; above 1: slip", [("", table["slip_evidence"], None, None)]),
+          [("evidence; above 1: slip", [("", table["slide_evidence"], None, None)]),
            ("slid, pitches", [("", table["slide_pitches"], None, None)]),
            ("contact, px", [("", table["contact_area_px"], None, None)])],
-          table, pictures / "slide.png")
+          table, pictures / "slide.png", "slide_status")
 
 
 def foam(table, pictures):
@@ -193,8 +193,8 @@ def main(arguments):
             array(table, read(recording / "taxels.csv"), pictures)
         return
     pad(table, read(recording / "forces.csv") if (recording / "forces.csv").exists() else {}, pictures)
-    if (folder / "slide.csv").exists():
-        gel(read(folder / "slide.csv"), pictures)
+    if known(table, "slip"):
+        gel(table, pictures)
 
 
 if __name__ == "__main__":

@@ -159,7 +159,7 @@ class Recording {
   }
   /// The first frame with a slip, or -1.
   int slips() const {
-    for (const test::Line& line : table("slide.csv")) {
+    for (const test::Line& line : table("frames.csv")) {
       if (line.at("slip") == "1") {
         return std::stoi(line.at("frame"));
       }
@@ -244,7 +244,7 @@ TEST_CASE("cases: a picture that is cut short is named and left out") {
   CHECK(has(checked, cut[0].string()));
   CHECK(has(checked, cut[1].string()));
   CHECK(recording.slips() == -1);
-  const auto rows = recording.table("slide.csv");
+  const auto rows = recording.table("frames.csv");
   REQUIRE(rows.size() == 17);
   CHECK(rows[12].at("frame") == "13");
 }
@@ -269,7 +269,7 @@ TEST_CASE("cases: a lamp that flickers in bands, or fades on one side") {
   Recording plain;
   plain.write("free", gel(Kind::free));
   plain.write("frames", gel(Kind::hold));
-  const double area = std::stod(plain.table("slide.csv").back().at("contact_area_px"));
+  const double area = std::stod(plain.table("frames.csv").back().at("contact_area_px"));
   bool is_held = false;
   for (const auto& [name, light] : lamps) {
     is_held = !is_held;
@@ -277,7 +277,7 @@ TEST_CASE("cases: a lamp that flickers in bands, or fades on one side") {
     Recording recording;
     recording.write("free", gel(Kind::free));
     recording.write("frames", gel(is_held ? Kind::hold : Kind::free), lit(light));
-    const double seen = std::stod(recording.table("slide.csv").back().at("contact_area_px"));
+    const double seen = std::stod(recording.table("frames.csv").back().at("contact_area_px"));
     const bool right = std::abs(seen - (is_held ? area : 0)) <= (is_held ? 0.15 * area : 0);
     CHECK((recording.slips() == -1 && right) !=
           has(recording.checked(), "in the same light and with nothing in contact"));
@@ -305,7 +305,7 @@ TEST_CASE("cases: frames that are not like the free pad say so, and are no slip"
   });
   CHECK(recording.slips() >= 15);
   CHECK(recording.slips() <= 17);  // across a gap the travel is less certain
-  for (const test::Line& line : recording.table("slide.csv")) {
+  for (const test::Line& line : recording.table("frames.csv")) {
     const bool is_other = line.at("frame") == "4" || line.at("frame") == "11";
     CHECK((line.at("slide_status") == "not of this pad") == is_other);
     CHECK(line.at("contact_area_px").empty() == is_other);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 
-#include "common/table.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
 
@@ -17,7 +16,7 @@ namespace {
 std::string written(const replay::FrameRow& row, const std::string& column) {
   const test::ScratchFolder folder;
   const auto file = folder.path() / "frames.csv";
-  replay::FramesCsv table(file);
+  replay::TableWriter table(file, replay::frame_columns());
   table.write(row);
   table.close();
   replay::Table read(file);

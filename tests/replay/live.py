@@ -5,6 +5,7 @@
 screen (Xvfb). Below the title, the window must show what --headless writes; the key r records."""
 import ctypes
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -105,6 +106,8 @@ def run(replay, recording, work):
         assert seen > 0 and best < CURSOR
         recorded = list((work / "keyed" / "001" / "frames").iterdir())
         assert recorded and f"{work / 'keyed' / '001'}, {len(recorded)} frames" in said
+        assert re.search(r"shown +\d+ of \d+ frames\nrate +[\d.]+ pictures per second.*\n"
+                         r"latency +[\d.]+ ms from frame to picture", said), said
     finally:
         xvfb.terminate()
         xvfb.wait()

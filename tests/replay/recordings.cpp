@@ -150,7 +150,8 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "moment_z_nm,wrench_status,"
         "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
         "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,"
-        "wrench_mz_sd_nm");
+        "wrench_mz_sd_nm,slide_status,contact_area_px,contact_center_x_px,contact_center_y_px,slide_dots,"
+        "slide_x_px,slide_y_px,slide_pitches,area_lost,slide_evidence,slip");
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "0,0.00,");
@@ -164,10 +165,11 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   CHECK(line.find(",no pose,,,,,,,,,,") != std::string::npos);
   std::getline(table, line);
   CHECK(line.substr(0, 7) == "2,0.25,");
-  CHECK(ends_with(line, ",no pressure,,,,,,,,,,,,"));  // a refusal has neither force nor its sd
-  line.resize(line.size() - 12);
+  // A refusal has neither force nor its sd; a pad with fluid has no columns of gels.
+  CHECK(ends_with(line, ",no pressure" + std::string(23, ',')));
+  line.resize(line.size() - 23);
   CHECK(line.find(",,,,,,") == std::string::npos);  // a rod touches: every other column is filled
-  CHECK(std::count(line.begin(), line.end(), ',') == columns - 12);
+  CHECK(std::count(line.begin(), line.end(), ',') == columns - 23);
   CHECK_FALSE(std::getline(table, line));
   CHECK(fs::exists(work.out() / "depth" / "000002.tiff"));
   CHECK(fs::exists(work.out() / "contact" / "000002.png"));

@@ -4,25 +4,20 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <regex>
 #include <system_error>
 #include <vector>
 
 #include "common/failure.hpp"
-#include "common/table.hpp"
+#include "common/whole_files.hpp"
 
 namespace replay {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* dot_columns = "frame,row,col,x_px,y_px,x_mm,y_mm,z_mm,contact,stick";
-
-/// "1" or "0"; empty if the state is unknown or the dot is not in contact.
-const char* stick_cell(DotState state) {
-  return state == DotState::stick ? "1" : state == DotState::slip ? "0" : "";
-}
 
 /// Whether replay or plot.py writes a file of this path, relative to the output folder.
 bool is_ours(const std::string& relative) {
@@ -140,20 +135,19 @@ fs::path OutputFolder::file(const std::string& part, const std::string& name) co
 void OutputFolder::publish() {
   try {
     refuse_foreign(place_);  // again: another program may have used it meanwhile
-    if (fs::exists(place_)) {
-      // The earlier run stays complete until the new one is in place.
-      const fs::path earlier = make_sibling(place_);
+    const fs::path earlier = fs::exists(place_) ? make_sibling(place_) : "";
+    if (!earlier.empty()) {
       fs::rename(place_, earlier);
-      std::error_code error;
-      fs::rename(growing_, place_, error);
-      if (error) {
-        fs::rename(earlier, place_);
-        fail(place_, "cannot be replaced: " + error.message());
-      }
-      fs::remove_all(earlier);
-    } else {
-      fs::rename(growing_, place_);
     }
+    try {
+      publish_folder(growing_, place_);
+    } catch (...) {
+      if (!earlier.empty()) {
+        fs::rename(earlier, place_);
+      }
+      throw;
+    }
+    fs::remove_all(earlier);
     growing_.clear();
   } catch (const fs::filesystem_error& error) {
     fail(place_, "cannot be written: " + error.code().message());
@@ -164,32 +158,6 @@ std::string numbered(const std::string& stem, int frame, const std::string& exte
   char digits[16];
   std::snprintf(digits, sizeof digits, "%06d", frame);
   return stem + digits + extension;
-}
-
-DotsCsv::DotsCsv(const fs::path& file) : file_(file), stream_(file) {
-  stream_ << dot_columns << '\n';
-}
-
-void DotsCsv::write(int frame, const FrameDots& dots) {
-  for (int i = 0; i < dots.dots_px.rows; ++i) {
-    for (int j = 0; j < dots.dots_px.cols; ++j) {
-      const cv::Vec2d& px = dots.dots_px(i, j);
-      const cv::Vec3d& mm = dots.dots_mm(i, j);
-      if (is_present(px)) {
-        stream_ << frame << ',' << i << ',' << j << ',' << cell_of(px[0]) << ',' << cell_of(px[1])
-                << ',' << cell_of(mm[0]) << ',' << cell_of(mm[1]) << ',' << cell_of(mm[2]) << ','
-                << (dots.in_contact(i, j) != 0 ? 1 : 0) << ',' << stick_cell(dots.state(i, j))
-                << '\n';
-      }
-    }
-  }
-}
-
-void DotsCsv::close() {
-  stream_.close();
-  if (!stream_) {
-    fail(file_, "cannot be written");
-  }
 }
 
 }  // namespace replay

@@ -5,11 +5,8 @@
 // and moved there when it is complete. The folder of an earlier run is replaced; any other is
 // refused.
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
-
-#include "replay/steps/frame.hpp"
 
 namespace replay {
 
@@ -40,17 +37,5 @@ class OutputFolder {
 
 /// "000012.tiff", or "depth_000012.png" with a stem.
 std::string numbered(const std::string& stem, int frame, const std::string& extension);
-
-/// dots.csv: one line for each dot that was found in a frame.
-class DotsCsv {
- public:
-  explicit DotsCsv(const std::filesystem::path& file);
-  void write(int frame, const FrameDots& dots);
-  void close();  ///< throws Failure where anything could not be written
-
- private:
-  std::filesystem::path file_;
-  std::ofstream stream_;
-};
 
 }  // namespace replay

@@ -6,9 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 #include <utility>
-
-#include "common/failure.hpp"
 
 namespace replay {
 namespace {
@@ -139,6 +138,27 @@ std::string cell_of(double value) {
     std::snprintf(text, sizeof text, "%.6f", value);
   }
   return text;
+}
+
+void Doubts::see(const std::string& name, const std::string& cell) {
+  constexpr std::string_view status = "_status";
+  if (name.ends_with(status) && !cell.empty() && cell != "ok" && cell != "no contact") {
+    ++counts_[name.substr(0, name.size() - status.size())][cell];
+  }
+}
+
+std::map<std::string, std::string> Doubts::in_words() const {
+  std::map<std::string, std::string> all;
+  for (const auto& [name, words] : counts_) {
+    int sum = 0;
+    std::string parts;
+    for (const auto& [word, count] : words) {
+      sum += count;
+      parts += (parts.empty() ? "" : ", ") + word + " " + std::to_string(count);
+    }
+    all[name] = std::to_string(sum) + " frames (" + parts + ")";
+  }
+  return all;
 }
 
 }  // namespace replay

@@ -4,8 +4,13 @@
 // Tables in .csv files: cells separated by commas, decimals by dots, no quotes.
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "common/failure.hpp"
 
 namespace replay {
 
@@ -48,5 +53,62 @@ bool read_number(const std::string& text, double& number);
 
 /// Six decimals; empty if `value` is not finite.
 std::string cell_of(double value);
+
+/// How often each word of doubt stands in a table, by the name of its column.
+class Doubts {
+ public:
+  /// Counts a cell of the column `name`, if that is one of a status. "ok" and "no contact" are no
+  /// doubt.
+  void see(const std::string& name, const std::string& cell);
+  /// One entry a column with doubt: "depth", "3 frames (not of this pad 2, refused 1)".
+  std::map<std::string, std::string> in_words() const;
+
+ private:
+  std::map<std::string, std::map<std::string, int>> counts_;
+};
+
+/// A column of a table that is written: its name, and its cell in a row.
+template <class Row>
+struct Column {
+  std::string name;
+  std::function<std::string(const Row&)> cell;
+};
+
+/// Writes a table. One list of columns makes the header, the lines and the count of doubts.
+template <class Row>
+class TableWriter {
+ public:
+  TableWriter(const std::filesystem::path& file, std::vector<Column<Row>> columns)
+      : file_(file), stream_(file), columns_(std::move(columns)) {
+    const char* comma = "";
+    for (const Column<Row>& column : columns_) {
+      stream_ << std::exchange(comma, ",") << column.name;
+    }
+    stream_ << '\n';
+  }
+  void write(const Row& row) {
+    const char* comma = "";
+    for (const Column<Row>& column : columns_) {
+      const std::string cell = column.cell(row);
+      stream_ << std::exchange(comma, ",") << cell;
+      doubts_.see(column.name, cell);
+    }
+    stream_ << '\n';
+  }
+  /// Throws Failure where anything could not be written.
+  void close() {
+    stream_.close();
+    if (!stream_) {
+      fail(file_, "cannot be written");
+    }
+  }
+  const Doubts& doubts() const { return doubts_; }
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::vector<Column<Row>> columns_;
+  Doubts doubts_;
+};
 
 }  // namespace replay

@@ -24,12 +24,12 @@ Writer::Writer(const Recording& recording,
       initial_dots_(initial_dots),
       total_(total),
       output_(options.out),
-      table_(output_.file("frames.csv")) {
+      table_(output_.file("frames.csv"), frame_columns()) {
   if (!recording.sensor.dots_only) {
     painter_.emplace(recording.sensor, recording.reference_depth, brightest_);
   }
   if (!initial_dots.empty()) {
-    dots_.emplace(output_.file("dots.csv"));
+    dots_.emplace(output_.file("dots.csv"), dot_columns());
   }
 }
 
@@ -37,7 +37,13 @@ void Writer::operator()(Scene scene) {
   rows_.push_back(scene);
   table_.write(rows_.back());
   if (dots_) {
-    dots_->write(scene.frame, scene.dots);
+    for (int i = 0; i < scene.dots.dots_px.rows; ++i) {
+      for (int j = 0; j < scene.dots.dots_px.cols; ++j) {
+        if (is_present(scene.dots.dots_px(i, j))) {
+          dots_->write({scene.frame, i, j, scene.dots});
+        }
+      }
+    }
   }
   const bool has_files = !options_.files || (scene.frame >= options_.files->first &&
                                              scene.frame < options_.files->last.value_or(total_));

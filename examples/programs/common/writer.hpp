@@ -46,8 +46,8 @@ class Writer {
   DotGrid initial_dots_;
   int total_;
   OutputFolder output_;
-  FramesCsv table_;
-  std::optional<DotsCsv> dots_;
+  TableWriter<FrameRow> table_;
+  std::optional<TableWriter<DotRow>> dots_;
   std::vector<FrameRow> rows_;
   std::vector<Scene> columns_;  ///< of the montage
 };

@@ -278,16 +278,13 @@ int run(const Options& options) {
       }
       Scene scene = chain(range.first + done, image);
       if (gel) {
-        (*gel)(scene.frame, scene.time_s, image, scene.dots.dots_px);
+        (*gel)(scene);
       }
       writer(std::move(scene));
     }
   }
   if (static_cast<int>(damaged.size()) == total) {
     throw Failure(damaged.begin()->second);
-  }
-  if (gel) {
-    gel->finish();
   }
   writer.finish();
   print_summary(chain, writer, recording, options);

@@ -135,7 +135,7 @@ int run_foam(const Options& options) {
   FoamStep step = make_step(options, recording, noise);
   watch_for_interrupts();
   OutputFolder output(options.out);
-  FoamCsv table(output.file("frames.csv"), recording);
+  TableWriter<FoamRow> table(output.file("frames.csv"), foam_columns(recording.sensor));
   std::vector<FoamRow> rows;
   const int total = *range.last - range.first;
   {

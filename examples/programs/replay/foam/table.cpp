@@ -3,62 +3,56 @@
 #include "replay/foam/table.hpp"
 
 #include <string>
+#include <utility>
 
-#include "common/failure.hpp"
-#include "common/table.hpp"
 #include "replay/pictures/picture_parts.hpp"
 
 namespace replay {
 namespace {
 
 using fingerpad::TaxelStatus;
+using Finger = fingerpad::FingerSample<double>;
+using Columns = std::vector<Column<FoamRow>>;
+
+bool has_waves(const Finger& finger) {
+  return finger.status == TaxelStatus::vibrating || finger.status == TaxelStatus::quiet;
+}
+
+/// Row or column of the vibration.
+std::string place(const Finger& finger, fingerpad::Index number) {
+  return finger.location == finger.no_location ? "" : std::to_string(number);
+}
 
 }  // namespace
 
-std::string finger_prefix(std::size_t finger, std::size_t fingers) {
-  return fingers > 1 ? "finger" + std::to_string(finger) + "_" : "";
-}
-
-FoamCsv::FoamCsv(const std::filesystem::path& file, const FoamRecording& recording)
-    : file_(file), stream_(file), fingers_(recording.sensor.fingers) {
-  stream_ << "frame,time_s";
-  const char* const sum = recording.sensor.newton_per_unit.empty() ? "sum" : "force_n";
-  for (std::size_t k = 0; k < fingers_.size(); ++k) {
-    for (const char* column : {"center_x_mm", "center_y_mm", sum, "vibrating_row", "vibrating_col",
-                               "waves", "frequency_hz", "taxels_left_out", "taxel_status"}) {
-      stream_ << ',' << finger_prefix(k, fingers_.size()) << column;
-    }
+Columns foam_columns(const FoamSensor& sensor) {
+  Columns columns = {{"frame", [](const FoamRow& r) { return std::to_string(r.frame); }},
+                     {"time_s", [](const FoamRow& r) { return r.time_s; }}};
+  for (std::size_t k = 0; k < sensor.fingers.size(); ++k) {
+    const std::string prefix = sensor.fingers.size() > 1 ? "finger" + std::to_string(k) + "_" : "";
+    const auto add = [&](const char* name, auto cell) {
+      columns.push_back(
+          {prefix + name, [k, cell](const FoamRow& r) { return cell(r.fingers[k]); }});
+    };
+    const int cols = sensor.fingers[k].cols;
+    add("center_x_mm", [](const Finger& f) { return cell_of(f.center_x_mm); });
+    add("center_y_mm", [](const Finger& f) { return cell_of(f.center_y_mm); });
+    add(sensor.newton_per_unit.empty() ? "sum" : "force_n", [](const Finger& f) {
+      return f.status == TaxelStatus::refused ? "" : format("%.9g", f.sum);
+    });
+    add("vibrating_row", [cols](const Finger& f) { return place(f, f.location / cols); });
+    add("vibrating_col", [cols](const Finger& f) { return place(f, f.location % cols); });
+    add("waves", [](const Finger& f) { return has_waves(f) ? std::to_string(f.waves) : ""; });
+    add("frequency_hz",
+        [](const Finger& f) { return has_waves(f) ? cell_of(f.frequency_hz) : ""; });
+    add("taxels_left_out", [](const Finger& f) {
+      return f.status == TaxelStatus::refused ? "" : std::to_string(f.left_out);
+    });
+    add("taxel_status", [](const Finger& f) { return std::string(name_of(f.status)); });
   }
-  stream_ << ",preslip,preslip_rule\n";
-}
-
-void FoamCsv::write(const FoamRow& row) {
-  stream_ << row.frame << ',' << row.time_s;
-  for (std::size_t k = 0; k < fingers_.size(); ++k) {
-    const auto& finger = row.fingers[k];
-    const bool has_waves =
-        finger.status == TaxelStatus::vibrating || finger.status == TaxelStatus::quiet;
-    stream_ << ',' << cell_of(finger.center_x_mm) << ',' << cell_of(finger.center_y_mm) << ','
-            << (row.was_taken() ? format("%.9g", finger.sum) : "");
-    if (finger.location == finger.no_location) {
-      stream_ << ",,";
-    } else {
-      stream_ << ',' << finger.location / fingers_[k].cols << ','
-              << finger.location % fingers_[k].cols;
-    }
-    stream_ << ',' << (has_waves ? std::to_string(finger.waves) : "") << ','
-            << (has_waves ? cell_of(finger.frequency_hz) : "") << ','
-            << (row.was_taken() ? std::to_string(finger.left_out) : "") << ','
-            << name_of(finger.status);
-  }
-  stream_ << ',' << (row.alarm.any() ? 1 : 0) << ',' << row.alarm.names() << '\n';
-}
-
-void FoamCsv::close() {
-  stream_.close();
-  if (!stream_) {
-    fail(file_, "cannot be written");
-  }
+  columns.push_back({"preslip", [](const FoamRow& r) { return r.alarm.any() ? "1" : "0"; }});
+  columns.push_back({"preslip_rule", [](const FoamRow& r) { return r.alarm.names(); }});
+  return columns;
 }
 
 }  // namespace replay

@@ -6,17 +6,11 @@
 
 #include "common/failure.hpp"
 #include "common/images.hpp"
-#include "common/table.hpp"
 #include "fingerpad/core/check.hpp"
 #include "replay/pictures/picture_parts.hpp"
 
 namespace replay {
 namespace {
-
-constexpr const char* columns =
-    "frame,time_s,contact_area_px,contact_center_x_px,contact_center_y_px,slide_status,"
-    "dots_in_contact,slide_x_px,slide_y_px,slide_pitches,area_lost,"
-    "slip_evidence,slip";
 
 SlideStep step_of(const Options& options, const FreePad& free, const DotSource& dots) {
   try {
@@ -35,47 +29,20 @@ GelReplay::GelReplay(Recording& recording,
     : options_(options),
       output_(output),
       free_(free_pad_of(recording, dots)),
-      step_(step_of(options, free_, dots)),
-      file_(output.file("slide.csv")),
-      table_(file_) {
-  table_ << columns << '\n';
-}
+      step_(step_of(options, free_, dots)) {}
 
-void GelReplay::operator()(int frame,
-                           const std::string& time_s,
-                           const cv::Mat& image,
-                           const DotGrid& dots) {
-  GelScene scene{frame, time_s, image, cv::Mat_<uchar>(image.size()), dots, {}};
-  scene.seen = step_(image, dots, scene.contact_mask);
-  write_row(scene);
-  const bool is_known = scene.seen.contact.ok();
-  touching_ += is_known && scene.seen.contact.in_contact() ? 1 : 0;
+void GelReplay::operator()(Scene& scene) {
+  scene.gel = step_(scene.image, scene.dots.dots_px, scene.contact_mask);
+  const GelFrame& seen = *scene.gel;
+  const bool is_known = seen.contact.ok();
+  touching_ += is_known && seen.contact.in_contact() ? 1 : 0;
   unlike_ += is_known ? 0 : 1;
-  if (scene.seen.slide.alarm && !slip_) {
-    slip_ = frame;
+  if (seen.slide.alarm && !slip_) {
+    slip_ = scene.frame;
   }
   if (options_.pictures) {
-    write_picture(output_.file("pictures", numbered("slide_", frame, ".png")),
+    write_picture(output_.file("pictures", numbered("slide_", scene.frame, ".png")),
                   slide_picture(scene));
-  }
-}
-
-void GelReplay::write_row(const GelScene& row) {
-  const GelFrame& seen = row.seen;
-  const std::string area = seen.contact.ok() ? std::to_string(seen.contact.contact_px) : "";
-  table_ << row.frame << ',' << row.time_s << ',' << area << ','
-         << cell_of(seen.contact.center_px.x) << ',' << cell_of(seen.contact.center_px.y) << ','
-         << (seen.contact.ok() ? name_of(seen.slide.status) : name_of(seen.contact.status)) << ','
-         << seen.slide.dots << ',' << cell_of(seen.slide.slide_px.x) << ','
-         << cell_of(seen.slide.slide_px.y) << ',' << cell_of(seen.slide.slide) << ','
-         << cell_of(seen.slide.lost) << ',' << cell_of(seen.slide.evidence) << ','
-         << (seen.slide.alarm ? 1 : 0) << '\n';
-}
-
-void GelReplay::finish() {
-  table_.close();
-  if (!table_) {
-    fail(file_, "cannot be written");
   }
 }
 

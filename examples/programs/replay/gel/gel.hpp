@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The output of replay for a gel pad with dots: slide.csv, a picture of each frame, and one chart.
-#include <fstream>
+// The output of replay for a gel pad with dots: its columns of frames.csv, and a picture of each
+// frame.
 #include <optional>
-#include <vector>
 
 #include "common/output.hpp"
 #include "replay/dots/dots.hpp"
@@ -17,27 +16,22 @@ namespace replay {
 
 class GelReplay {
  public:
-  /// Options and output must outlive this object. Throws Failure, as do the
-  /// functions below.
+  /// Options and output must outlive this object. Throws Failure, as does
+  /// the function below.
   GelReplay(Recording& recording,
             const Options& options,
             const DotSource& dots,
             const OutputFolder& output);
 
-  void operator()(int frame, const std::string& time_s, const cv::Mat& image, const DotGrid& dots);
-  /// Closes the table.
-  void finish();
+  /// Sets gel and contact mask of the scene, and paints it.
+  void operator()(Scene& scene);
   void print_summary() const;
 
  private:
-  void write_row(const GelScene& scene);
-
   const Options& options_;
   const OutputFolder& output_;
   FreePad free_;
   SlideStep step_;
-  std::filesystem::path file_;
-  std::ofstream table_;
   int touching_ = 0;         ///< frames
   int unlike_ = 0;           ///< frames that are not of this pad
   std::optional<int> slip_;  ///< first frame with an alarm

@@ -69,19 +69,19 @@ void paint_arrow(Canvas& canvas, Spot from, Spot to, double width, const Ink& co
   }
 }
 
-Spot middle_of(const GelScene& scene) {
-  return {scene.seen.contact.center_px.x, scene.seen.contact.center_px.y};
+Spot middle_of(const Scene& scene) {
+  return {scene.gel->contact.center_px.x, scene.gel->contact.center_px.y};
 }
 
 /// Paints the frame, the contact's outline, and its slide past the dots.
-void paint_scene(Canvas& canvas, const Place& place, const GelScene& scene, double line) {
+void paint_scene(Canvas& canvas, const Place& place, const Scene& scene, double line) {
   paint_image(canvas, place.box, scene.image, 245);
   const Outline outline = outline_of(scene.contact_mask);
   if (outline.empty()) {
     return;
   }
-  const Ink colour = slip_ink(scene.seen);
-  const Spot slide(scene.seen.slide.slide_px.x, scene.seen.slide.slide_px.y);
+  const Ink colour = slip_ink(*scene.gel);
+  const Spot slide(scene.gel->slide.slide_px.x, scene.gel->slide.slide_px.y);
   paint_outline(canvas, place, outline, -slide, 0.7 * line, ink::white, true);
   paint_outline(canvas, place, outline, {0, 0}, line, colour, false);
   const Spot middle = middle_of(scene);
@@ -109,28 +109,28 @@ Ink slip_ink(const GelFrame& seen) {
                                     : held_ink;
 }
 
-cv::Mat slide_picture(const GelScene& scene) {
+cv::Mat slide_picture(const Scene& scene) {
   Sheet sheet("Contact and slide", caption(scene.frame, scene.time_s), scene.image.size(), 76);
   Canvas& canvas = sheet.canvas;
   const Place& place = sheet.place;
   paint_scene(canvas, place, scene, 2.6);
-  for (const cv::Vec2d& dot : scene.dots_px) {
+  for (const cv::Vec2d& dot : scene.dots.dots_px) {
     if (is_present(dot)) {
       canvas.disc(place.of(dot[0], dot[1]), 3.2, ink::white);
       canvas.disc(place.of(dot[0], dot[1]), 2, ink::black);
     }
   }
-  const char* verdict = !scene.seen.contact.in_contact() ? "free"
-                        : scene.seen.slide.alarm         ? "SLIPS"
-                        : evidence_of(scene.seen) > 0.5  ? "may slip"
+  const char* verdict = !scene.gel->contact.in_contact() ? "free"
+                        : scene.gel->slide.alarm         ? "SLIPS"
+                        : evidence_of(*scene.gel) > 0.5  ? "may slip"
                                                          : "held";
-  const Ink colour = slip_ink(scene.seen);
+  const Ink colour = slip_ink(*scene.gel);
   const double y = place.below() + 24;
   canvas.disc({44, y}, 8, colour);
   canvas.text({60, y + letter / 2}, verdict, letter, colour, Align::left, true);
   canvas.text({place.right(), y + letter / 2}, "dashed: contact if it moved with the dots", letter,
               ink::grey, Align::right);
-  sheet.write(54, words_of(scene.seen));
+  sheet.write(54, words_of(*scene.gel));
   return canvas.finished();
 }
 

@@ -62,7 +62,6 @@ GelFrame SlideStep::operator()(const cv::Mat& image, const DotGrid& dots, cv::Ma
   mask = 0;
   const cv::Rect whole({0, 0}, contact_.mask().size() * options_.cell_px);
   cv::resize(contact_.mask(), mask(whole), whole.size(), 0, 0, cv::INTER_NEAREST);
-  seen.slip = limit_(fingerpad::ContactLoad<double>{}, seen.slide);
   return seen;
 }
 

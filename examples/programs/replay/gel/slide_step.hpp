@@ -9,8 +9,8 @@
 #include "common/recording.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
-#include "fingerpad/slip/friction_limit.hpp"
 #include "replay/dots/grid.hpp"
+#include "replay/steps/frame.hpp"
 
 namespace replay {
 
@@ -19,13 +19,6 @@ fingerpad::GelOptions gel_options_for(double dot_px);
 
 /// The same for a frame so wide; `dot_px` 0: 14 px in a frame 640 px wide.
 fingerpad::GelOptions gel_options_of(int width_px, double dot_px, bool bright_dots);
-
-/// One frame of a gel.
-struct GelFrame {
-  fingerpad::GelResult contact;
-  fingerpad::SlideResult slide;
-  fingerpad::SlipResult<double> slip;  ///< fused evidence, without a force
-};
 
 class SlideStep {
  public:
@@ -46,7 +39,6 @@ class SlideStep {
   fingerpad::GelContact contact_;
   fingerpad::GelSlide slide_;
   fingerpad::SlideResult last_;
-  fingerpad::FrictionLimit<> limit_;
   std::vector<double> ms_;
 };
 

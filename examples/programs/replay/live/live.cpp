@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <opencv2/highgui.hpp>
@@ -19,6 +18,7 @@
 #include "common/interrupt.hpp"
 #include "common/output.hpp"
 #include "common/recording.hpp"
+#include "common/table.hpp"
 #include "replay/chain.hpp"
 #include "replay/live/frames.hpp"
 #include "replay/live/recorder.hpp"
@@ -168,16 +168,15 @@ void play_to_folder(const Options& options,
     write_picture(output.file("pictures", numbered("live_", frame, ".png")), picture);
     return 0;
   });
-  const std::filesystem::path file = output.file("frames.csv");
-  std::ofstream table(file);
-  table << "frame,time_s,latency_ms\n";
+  TableWriter<Shown> table(
+      output.file("frames.csv"),
+      {{"frame", [](const Shown& shown) { return std::to_string(shown.frame); }},
+       {"time_s", [](const Shown& shown) { return shown.time_s; }},
+       {"latency_ms", [](const Shown& shown) { return format("%.1f", shown.latency_ms); }}});
   for (const Shown& shown : log.shown()) {
-    table << shown.frame << ',' << shown.time_s << ',' << format("%.1f", shown.latency_ms) << '\n';
+    table.write(shown);
   }
   table.close();
-  if (!table) {
-    fail(file, "cannot be written");
-  }
   output.publish();
   print(log, frames, options.range.first);
   std::printf("pictures     %s\n", (output.place() / "pictures").c_str());

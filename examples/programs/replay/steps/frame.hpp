@@ -10,6 +10,8 @@
 #include <string>
 
 #include "common/true_forces.hpp"
+#include "fingerpad/gel/gel_contact.hpp"
+#include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 #include "replay/dots/grid.hpp"
 
@@ -19,6 +21,12 @@ using fingerpad::ContactResult;
 using fingerpad::DotState;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One frame of a gel.
+struct GelFrame {
+  fingerpad::GelResult contact;
+  fingerpad::SlideResult slide;
+};
 
 /// The numbers of one frame: a line of frames.csv.
 struct FrameRow {
@@ -36,6 +44,7 @@ struct FrameRow {
   /// Its stick ratio is that of dots and friction together. A dots-only recording has that of the
   /// dots alone.
   fingerpad::FingertipResult touch;
+  std::optional<GelFrame> gel;  ///< of a dots-only recording
   std::optional<TrueForce> truth;
 
   bool pad_has_changed() const {
