@@ -83,7 +83,7 @@ struct IntensityByBall {
       return 150 * std::exp(-depth / 3);
     });
     const IntensityFit<S> fit =
-        fit_intensity<S>(free, std::array{pressed}, S(4) * p, S(0.1), 1, {.smoothing_px = 0});
+        fit_intensity<S>(free, std::array{pressed}, S(4) * p, S(0.1), {.smoothing_px = 0});
     REQUIRE(fit.ok());
     return {fit.law.linear_mm, fit.max_depth_mm};
   }

@@ -113,8 +113,7 @@ void try_intensity(Input& in) {
   }
   const double ball_mm = in.number(1, 8), mm_per_px = in.number(0.02, 0.2);
   const std::array pressed_views = {presses[0].view(), presses[1].view()};
-  const IntensityFit<> fit =
-      fit_intensity(free.view(), pressed_views, ball_mm, mm_per_px, in.flag() ? 3 : 1);
+  const IntensityFit<> fit = fit_intensity(free.view(), pressed_views, ball_mm, mm_per_px);
   if (fit.ok()) {
     fingerpad::require(fit.law);
     require(is_finite(fit.mean_error_mm), "a mean error is a number");

@@ -7,7 +7,7 @@
 //   depth = a l + b l^2 + c l^3,   l = ln(free / now),
 // where the first term alone is the law of Beer and Lambert (Lin et al., "9DTact", 2023, use a
 // table instead). The ratio cancels the lamp pixel by pixel; a difference does not.
-// calibrate/intensity.hpp finds a, b and c from presses of a ball.
+// calibrate/intensity.hpp finds a from presses of a ball.
 #include <algorithm>
 #include <array>
 #include <cmath>
