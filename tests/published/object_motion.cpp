@@ -87,6 +87,23 @@ bool prints_as(double error, const char* digits) {
 
 }  // namespace
 
+TEST_CASE("published object motion: each dot around counts as much as the others (eqs. 14, 15)") {
+  rc::prop("a step of any dot turns the two columns by its share of the side's length", [] {
+    const auto dots = nine_dots();
+    const auto at = static_cast<std::size_t>(test::whole(0, 8));
+    const Index row = static_cast<Index>(at / 3) - 1, col = static_cast<Index>(at % 3) - 1;
+    const Vector step = {0, 0, test::uniform(-0.3, 0.3)};
+    auto moved = dots;
+    moved[at] += step;
+    const auto b = basis(moved);
+    // the sides of the free dots are 9 mm long: 3 rows, each over two pitches of 1.5 mm
+    const Vector n_1 = normalized(Vector{9, 0, static_cast<double>(col) * step.z});
+    const Vector n_2 = normalized(Vector{0, 9, static_cast<double>(row) * step.z});
+    RC_ASSERT(norm(Vector{b.m[0][0], b.m[1][0], b.m[2][0]} - n_1) < 1e-12);
+    RC_ASSERT(norm(Vector{b.m[0][1], b.m[1][1], b.m[2][1]} - n_2) < 1e-12);
+  });
+}
+
 TEST_CASE("published object motion: the basis as printed and as repaired (E021, E022, E023)") {
   const auto k = nine_dots();
   const Rotation<double> true_turn =
