@@ -281,6 +281,34 @@ TEST_CASE("dot follower: after a jump of the whole print no label is wrong, and 
   CHECK(follower(picture, dots).ok());
 }
 
+TEST_CASE(
+    "dot follower: dark spots beside the print are dirt, unless there is half a side of them") {
+  const Print print{.slope = 0};
+  const auto clean = print.picture();
+  struct Spots {
+    int count;     ///< of the 44 places a pitch beyond the border
+    double share;  ///< of a dot's darkness
+    bool ok;
+  };
+  for (const Spots& spots :
+       {Spots{5, 1, true}, Spots{6, 1, false}, Spots{11, 0.53, false}, Spots{11, 0.47, true}}) {
+    auto picture = clean;
+    for (int k = 0; k < spots.count; ++k) {
+      const Point at = print.seen({double(k - count / 2), double(count / 2 + 1)});
+      for (Index i = 0; i < side; ++i) {
+        for (Index j = 0; j < side; ++j) {
+          const bool in_spot = norm(Point{double(j), double(i)} - at) < 4;
+          picture(i, j) = in_spot ? print.light * (1 - spots.share * print.ink) : picture(i, j);
+        }
+      }
+    }
+    CAPTURE(spots.count, spots.share);
+    DotFollower follower = follower_of(print);
+    Dots dots(count, count);
+    CHECK(follower(bytes_of(picture), dots).ok() == spots.ok);
+  }
+}
+
 TEST_CASE("dot follower: discs that stay round on a print that bends are followed", "[figures]") {
   // beads in a gel, or the heads of pins: 9 x 9 discs
   constexpr Index n = 9;

@@ -193,6 +193,24 @@ const test::Image<double>& loaded_picture() {
 
 }  // namespace
 
+TEST_CASE("side dots: light between four pixels") {
+  test::Image<double> image(5, 7);
+  const auto light = [](double x, double y) { return 3 + 2 * x - y + 0.5 * x * y; };
+  for (Index i = 0; i < 5; ++i) {
+    for (Index j = 0; j < 7; ++j) {
+      image(i, j) = light(double(j), double(i));
+    }
+  }
+  const auto view = as_view(image);
+  for (const Point2<double>& p : {Point2<double>{0, 0}, {1.25, 2.5}, {5.9, 3.1}, {3, 3.75}}) {
+    CHECK(detail::light_at(view, p) == Approx(light(p.x, p.y)).epsilon(1e-12));
+  }
+  for (const Point2<double>& p :
+       {Point2<double>{-0.1, 2}, {6, 2}, {2, 4.1}, {not_a_number<double>(), 2}}) {
+    CHECK(detail::light_at(view, p) == 0);
+  }
+}
+
 TEST_CASE("side dots: rows are found by their first angle, beside a grid", "[figures]") {
   for (const double turn : {0.0, 0.031, -1.2, 3.0}) {
     Print print{.turn = turn};
