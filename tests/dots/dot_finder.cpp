@@ -78,6 +78,49 @@ TEST_CASE("dots: a grid is found without a word about it, to a fraction of a pix
   CHECK(errors.worst_px < 0.15);
 }
 
+TEST_CASE("dots: small, large and close dots are found without a word about them") {
+  Print print;
+  print.rows = print.cols = 3;
+  print.radius_px = GENERATE(1.2, 1.5, 26.0);
+  print.pitch_px = 2.7 * print.radius_px;
+  print.noise = 1;
+  const DotPlaces truth = test::places_of(print);
+  const DotFinder finder(test::picture_of(print, truth));
+  CAPTURE(print.radius_px, finder.refusal());
+  REQUIRE(finder.ok());
+  CHECK(test::errors_of(free_of(finder), truth).count == 9);
+  CHECK(test::errors_of(free_of(finder), truth).worst_px < 0.15 + 0.01 * print.radius_px);
+}
+
+TEST_CASE("dots: a dot is fitted by the disc that the free pad shows at its place") {
+  // ellipses, the more the farther to the right, as on the wall of a dome
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  const auto picture = [&](const cv::Vec2d& by) {
+    cv::Mat_<double> light(print.frame, print.ground);
+    for (int i = 0; i < light.rows; ++i) {
+      for (int j = 0; j < light.cols; ++j) {
+        for (const cv::Vec2d& dot : truth) {
+          const cv::Vec2d off = cv::Vec2d(j, i) - dot - by;
+          const double across = print.radius_px * (1 - 0.5 * dot[0] / print.frame.width);
+          const double r = std::hypot(off[0] / across, off[1] / print.radius_px);
+          light(i, j) -= (print.ground - print.ink) *
+                         (std::clamp)(0.5 + (1 - r) * across / 3, 0.0, 1.0) * (r < 2 ? 1 : 0);
+        }
+      }
+    }
+    cv::Mat bytes, frame;
+    light.convertTo(bytes, CV_8U);
+    cv::merge(std::vector<cv::Mat>(3, bytes), frame);
+    return frame;
+  };
+  DotFinder finder(picture({0, 0}));
+  REQUIRE(finder.ok());
+  const DotPlaces found = dots_in(finder, picture({1.5, -0.7}));
+  CHECK(test::errors_of(found, test::moved(truth, {1.5, -0.7})).count == 88);
+  CHECK(test::errors_of(found, test::moved(truth, {1.5, -0.7})).rms_px < 0.006);
+}
+
 TEST_CASE("dots: a frame that is moved has its dots moved alike") {
   Print print;
   print.fall = 0;

@@ -136,6 +136,7 @@ class DotFinder {
       return;
     }
     spots_.emplace(look_, options.where);
+    (void)spots_->learn(free_frame, present(free_));
     const double edge = look_.radius_px + (std::max)(look_.radius_px, look_.edge_px + 2);
     print_.emplace(free_, [where = options.where, size = size_, edge](const Place& at) {
       const cv::Rect2d view(edge, edge, size.width - 1 - 2 * edge, size.height - 1 - 2 * edge);
@@ -239,6 +240,13 @@ class DotFinder {
                : "";
   }
 
+  static std::vector<Place> present(const Places& dots) {
+    std::vector<Place> some;
+    std::copy_if(dots.cells().begin(), dots.cells().end(), std::back_inserter(some),
+                 [](const Place& dot) { return is_finite(dot); });
+    return some;
+  }
+
   /// Puts the dots at their place among the given rows and columns; why not if they have none.
   std::string placed(const DotPattern& given) {
     const Places flat = detail::flattened(free_);
@@ -277,12 +285,7 @@ class DotFinder {
     Attempt one;
     one.look = look;
     one.dots = detail::lattice_of(spots);
-    std::vector<Point2<double>> dots;
-    for (const Point2<double>& dot : one.dots.cells()) {
-      if (is_finite(dot)) {
-        dots.push_back(dot);
-      }
-    }
+    const std::vector<Place> dots = present(one.dots);
     if (!dots.empty()) {
       const detail::SpotMap map(dots);
       const double pitch_px = detail::pitch_of(one.dots);
@@ -290,7 +293,7 @@ class DotFinder {
         const auto hit = map.nearest(spot, 2.5 * pitch_px);
         one.beside += hit.spot >= 0 && hit.distance_px > 0 ? 1 : 0;
       }
-      one.spot = finder.typical(frame, dots);
+      one.spot = finder.learn(frame, dots);
       const auto count = static_cast<double>(dots.size());
       one.score =
           count * count / static_cast<double>(spots.size()) * one.spot.contrast * one.spot.contrast;
@@ -302,7 +305,7 @@ class DotFinder {
   /// looked for again with the radius and the blur that its dots have, as long as the score stays
   /// at 90 % or more of the last one.
   static Attempt search(const cv::Mat& frame, const DotFinderOptions& options) {
-    constexpr double smallest_px = 1.5, step = 1.4;
+    constexpr double smallest_px = 1, step = 1.4;
     constexpr int rounds = 2;
     const DotPattern& given = options.pattern;
     const bool known = given.radius_px > 0;
@@ -312,7 +315,8 @@ class DotFinder {
       for (const bool bright : {false, true}) {
         if (bright == given.bright.value_or(bright)) {
           const Attempt one =
-              attempt(frame, options, {r, 2, bright, options.min_contrast, options.color_weights});
+              attempt(frame, options,
+                      {r, (std::min)(r, 2.0), bright, options.min_contrast, options.color_weights});
           best = one.score > best.score ? one : best;
         }
       }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "fingerpad/core/grid.hpp"
@@ -59,7 +60,10 @@ class SpotFinder {
       const double r = look_.radius_px / coarse_;
       for (const Place& peak : rough) {
         const Place at = reduced(peak, coarse_);
-        const DiscFit fit = locator_.find(light, at, {{r, 0}, {0, r}}, edge_px_, {0, 0});
+        const int print = dots_.nearest(peak, 5 * look_.radius_px).spot;
+        const DiscMap disc =
+            print < 0 ? DiscMap{{r, 0}, {0, r}} : discs_[static_cast<std::size_t>(print)];
+        const DiscFit fit = locator_.find(light, at, disc, edge_px_, {0, 0});
         if (is_dot(fit) && norm(fit.center - at) < r) {
           found.push_back(full(fit.center, coarse_));
         }
@@ -72,8 +76,11 @@ class SpotFinder {
   struct Typical {
     double radius_px = 0, edge_px = 0, contrast = 0;
   };
-  Typical typical(const cv::Mat& frame, const std::vector<Place>& dots) {
+  /// From now on spots are judged by the disc of the nearest of these dots.
+  Typical learn(const cv::Mat& frame, const std::vector<Place>& dots) {
     std::vector<double> radii, edges, contrasts;
+    std::vector<Place> fitted;
+    discs_.clear();
     in_light_of(frame, [&](const auto& light) {
       for (const Place& dot : dots) {
         const double r = look_.radius_px / coarse_;
@@ -84,9 +91,12 @@ class SpotFinder {
           radii.push_back(coarse_ * std::sqrt(map.ja.x * map.jb.y - map.ja.y * map.jb.x));
           edges.push_back(coarse_ * edge);
           contrasts.push_back(fit.contrast);
+          discs_.push_back(map);
+          fitted.push_back(dot);
         }
       }
     });
+    dots_ = SpotMap(std::move(fitted));
     return radii.empty() ? Typical() : Typical{median(radii), median(edges), median(contrasts)};
   }
 
@@ -220,6 +230,8 @@ class SpotFinder {
   int fine_;        ///< frame pixels per side of a pixel of the frame in which spots are detected
   int coarse_;      ///< the same where centers are fitted
   double edge_px_;  ///< there
+  SpotMap dots_;    ///< of the free pad
+  std::vector<DiscMap> discs_;
   DotLocator locator_;
 };
 

@@ -54,11 +54,12 @@ class Table {
 
 using Places = Table<Place>;
 
-/// Nearest-neighbour search among the spots of a frame, sorted by y. The spots must outlive the
-/// map. A query takes O(log spots + spots in a strip of height 2 reach_px) time.
+/// Nearest-neighbour search among the spots of a frame, sorted by y. A query takes O(log spots +
+/// spots in a strip of height 2 reach_px) time.
 class SpotMap {
  public:
-  explicit SpotMap(const std::vector<Place>& spots) : spots_(&spots), order_(spots.size()) {
+  explicit SpotMap(std::vector<Place> spots = {})
+      : spots_(std::move(spots)), order_(spots_.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     std::sort(order_.begin(), order_.end(), [&](int a, int b) {
       return std::pair((*this)[a].y, (*this)[a].x) < std::pair((*this)[b].y, (*this)[b].x);
@@ -84,11 +85,11 @@ class SpotMap {
     return hit;
   }
 
-  const Place& operator[](int spot) const { return (*spots_)[static_cast<std::size_t>(spot)]; }
-  int size() const { return static_cast<int>(spots_->size()); }
+  const Place& operator[](int spot) const { return spots_[static_cast<std::size_t>(spot)]; }
+  int size() const { return static_cast<int>(spots_.size()); }
 
  private:
-  const std::vector<Place>* spots_;
+  std::vector<Place> spots_;
   std::vector<int> order_;
 };
 
