@@ -746,6 +746,16 @@ TEST_CASE("dots: another print than the one told is refused by what it shows") {
     options.pattern.middle_px = {truth(3, 4)[0] + print.pitch_px / 2, truth(3, 4)[1]};
     CHECK(told(7, 10) == "");
   }
+  SECTION("with the middle at a corner of a print that is turned") {
+    for (cv::Vec2d& dot : truth) {
+      const cv::Vec2d off = dot - cv::Vec2d(160, 120);
+      dot = cv::Vec2d(160, 120) + std::cos(0.3) * off + std::sin(0.3) * cv::Vec2d(-off[1], off[0]);
+    }
+    options.pattern.middle_px = {truth(6, 8)[0], truth(6, 8)[1]};
+    CHECK(told(13, 17) == "");
+    CHECK(told(14, 17) == "7 rows and 9 columns of dots, not 14 and 17");
+    CHECK(told(11, 15) == "7 rows and 9 columns of dots, not 11 and 15");
+  }
   SECTION("an inner row is missing") {
     truth.row(GENERATE(2, 3)) = cv::Vec2d::all(std::nan(""));
     CHECK(told(0, 0).find("and 9 columns, and") != std::string::npos);
