@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -241,18 +242,12 @@ bool is_offset(const S& by_constant, const S& left_sq, const S& constant_sq, con
   return left_sq < S(2) * by_constant && largest_sq < S(100) * constant_sq;
 }
 
-/// Coefficients of 1, t, t^2, t^3 in G_k, the sum over j >= k of the Bernstein polynomials B_j(t),
-/// for degrees 1 to 3. A polynomial whose factors of G_1, G_2, ... are not negative never falls in
-/// [0, 1] (for degree 2 also the reverse).
-inline constexpr int rising_terms[3][4][4] = {
-    {{1}, {0, 1}}, {{1}, {0, 2, -1}, {0, 0, 1}}, {{1}, {0, 3, -3, 1}, {0, 0, 3, -2}, {0, 0, 0, 1}}};
-
 }  // namespace detail
 
 /// Normal force from area, depth or radius by a polynomial. One that falls somewhere between 0 and
-/// the largest measure is replaced by one that does not; a force that falls is refused. Degree in
-/// [1, 3]. `through_zero`: no force without contact; the published curves lack this. Uses the
-/// samples with a measure > 0 and a normal force. Allocates; O(samples).
+/// the largest measure loses its lowest power, if it falls at 0, or else its highest; a force that
+/// falls is refused. Degree in [1, 3]. `through_zero`: no force without contact; the published
+/// curves lack this. Uses the samples with a measure > 0 and a normal force. Allocates; O(samples).
 template <scalar S = double>
 NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
                                    int degree = 2,
@@ -263,7 +258,7 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
       samples, [](const ForceSample<S>& s) { return is_finite(s.normal_force_n); });
   expects(!some.empty(), owner, "usable samples", 0LL,
           "> 0: with a measure > 0 and a finite normal force");
-  const Index n = static_cast<Index>(some.size()), size = degree + 1;
+  const Index n = static_cast<Index>(some.size()), first = through_zero ? 1 : 0;
   detail::FitVector<S> t(n), measured(n);  // t: measure over the largest
   for (Index i = 0; i < n; ++i) {
     t(i) = some[static_cast<std::size_t>(i)].measure;
@@ -275,46 +270,39 @@ NormalForceFit<S> fit_normal_force(std::span<const ForceSample<S>> samples,
   curve.to = t.maxCoeff();
   expects(curve.from < curve.to, owner, "largest measure", curve.to, "> the smallest");
   t /= curve.to;
-  detail::FitMatrix<S> powers = detail::FitMatrix<S>::Constant(n, size, S(1)), terms(size, size);
-  for (Index k = 0; k < size; ++k) {
-    for (Index i = 0; i < size; ++i) {
-      terms(i, k) = S(detail::rising_terms[degree - 1][k][i]);
-    }
-    powers.rightCols(size - 1 - k).array().colwise() *= t.array();
-  }
-  std::vector<Index> used;
-  for (Index k = through_zero ? 1 : 0; k < size; ++k) {
-    used.push_back(k);
-  }
   detail::LinearFit<S> fit;
-  for (Index falls = 0; falls >= 0;) {  // without the terms that fall
+  std::vector<std::size_t> powers(static_cast<std::size_t>(degree + 1 - first));
+  std::iota(powers.begin(), powers.end(), static_cast<std::size_t>(first));
+  for (S lowest(-1); value(lowest) < 0;) {
+    const Index terms = static_cast<Index>(powers.size());
+    detail::FitMatrix<S> columns = detail::FitMatrix<S>::Constant(n, terms, S(1));
+    detail::FitVector<S> scale = detail::FitVector<S>::Constant(terms, S(1));  // of the measure
     std::vector<std::string> names;
-    for (const Index k : used) {
-      names.push_back(k == 0 ? "the constant" : "measure^" + std::to_string(k));
+    for (Index k = 0; k < terms; ++k) {
+      const std::size_t power = powers[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < power; ++i) {
+        columns.col(k).array() *= t.array();
+        scale(k) = scale(k) / curve.to;
+      }
+      names.push_back(power == 0 ? "the constant" : "measure^" + std::to_string(power));
     }
-    const Index first = through_zero ? 0 : 1;
-    const Index others = static_cast<Index>(used.size()) - first;
-    expects(others > 0, owner, "slope of the force over the measure", S(-1),
+    fit = detail::fit_linear<S>(owner, names, measured, columns);
+    curve.coefficients = detail::zeros<S, 4>();
+    curve.covariance = detail::zero_matrix<S, 4>();
+    for (Index i = 0; i < terms; ++i) {
+      const std::size_t row = powers[static_cast<std::size_t>(i)];
+      curve.coefficients[row] = scale(i) * fit.parameters(i);
+      for (Index j = 0; j < terms; ++j) {
+        const std::size_t col = powers[static_cast<std::size_t>(j)];
+        curve.covariance[row][col] = scale(i) * scale(j) * fit.covariance(i, j);
+      }
+    }
+    lowest = curve.lowest_slope(S(0));
+    const bool falls = value(lowest) < 0, falls_first = value(curve.slope(S(0))) < 0;
+    expects(!falls || terms > 2 - first, owner, "slope of the force over the measure", lowest,
             ">= 0: the force falls while the contact grows");
-    fit = detail::fit_linear<S>(owner, names, measured, powers * terms(Eigen::all, used));
-    const bool rises = !(fit.parameters.tail(others).minCoeff(&falls) < S(0));
-    falls = rises ? -1 : first + falls;
-    if (!rises) {
-      used.erase(used.begin() + falls);
-    }
-  }
-  detail::FitMatrix<S> scaled = terms(Eigen::all, used);  // of measure / to, then of the measure
-  S scale(1);
-  for (Index i = 0; i < size; ++i) {
-    scaled.row(i) /= scale;
-    scale = scale * curve.to;
-  }
-  const detail::FitVector<S> coefficients = scaled * fit.parameters;
-  const detail::FitMatrix<S> covariance = scaled * fit.covariance * scaled.transpose();
-  for (Index i = 0; i < size; ++i) {
-    curve.coefficients[static_cast<std::size_t>(i)] = coefficients(i);
-    for (Index j = 0; j < size; ++j) {
-      curve.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = covariance(i, j);
+    if (falls) {
+      powers.erase(falls_first ? powers.begin() + 1 - first : powers.end() - 1);
     }
   }
   curve.residual_sd_n = fit.residual_sd;
