@@ -311,6 +311,7 @@ struct Pad {
     o.contact.ring_px = 25 / shrink;
     o.contact.free_apex_mm = scene["apex_mm"];
     o.dot_radius_px = scene["dot_mm"] / 2 / camera.pitch_mm;
+    o.friction.soft_object = scene.name == "P_foam";
     o.side_dots = static_cast<Index>(scene["side_dots"]);
     o.wrench.emplace();
     o.wrench->cap = {scene["base_mm"], scene["mould_mm"], scene["mooney_share"]};

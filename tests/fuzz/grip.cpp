@@ -37,8 +37,7 @@ void try_grip(Input& in) {
     return is_finite(force_n) && force_n >= options.min_force_n && force_n <= options.max_force_n;
   };
   for (Index calls = in.whole(1, 60); calls > 0; --calls) {
-    const ContactLoad<double> load{in.number(0, 10), in.number(0, 10), in.number(-20, 20),
-                                   in.number(0, 5)};
+    const ContactLoad<double> load{in.number(0, 10), in.number(0, 10), in.number(-20, 20)};
     const auto update = static_cast<RatioUpdate>(in.whole(0, 3));
     const double ratio = in.number(0, 1), step_s = in.number(0, 0.2);
     const auto slip = fuzz::frame([&] { return limit(load, ratio, update); });

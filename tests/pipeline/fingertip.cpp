@@ -200,19 +200,16 @@ TEST_CASE("frames of 16 bit", "[chain]") {
 }
 
 TEST_CASE("without six axes friction is that of the look-up", "[chain]") {
-  // The moment of a contact with uniform pressure acts at the mean distance from its middle: 2/3 of
-  // the radius.
   auto options = frames().options();
   Fingertip tip(options);
   for (std::size_t k = 0; k < 2; ++k) {
     const Inputs in = frames()[k].view();
     const FingertipResult touch = tip(in.red, in.green, in.dots_px);
     REQUIRE(touch.normal.has_force());
-    const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
-    const fingerpad::ContactLoad<double> load = {touch.normal.force_n,
-                                                 norm(touch.shear.tangential_force_n),
-                                                 touch.shear.moment_n_mm, 2.0 / 3 * radius_mm};
-    CHECK(touch.slip.friction == Approx(fingerpad::friction_of(load)));
+    const auto load =
+        fingerpad::contact_load(touch.normal.force_n, touch.shear.tangential_force_n,
+                                touch.shear.moment_n_mm, tip.dots_mm(), tip.dots_in_contact());
+    CHECK(touch.slip.friction == friction_of(load));
     if (k == 1) {  // rotated most
       CHECK(std::abs(touch.shear.moment_n_mm) > 0.1);
     }

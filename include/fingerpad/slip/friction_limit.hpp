@@ -3,15 +3,11 @@
 #pragma once
 // Detects gross slip by comparing force and moment of the contact with their limit at the last
 // slide. Dots cannot show an object that slides over a membrane at rest, or that carries all dots
-// along equally. The load of a contact is
-//
-//   L = hypot(f, m) / (1 - 0.067 (2 f m / (f^2 + m^2))^2),  f = F_t / F_n,  m = M_n / (arm F_n),
-//
-// with F_n normal and F_t tangential to the contact, M_n the moment about the normal through its
-// center, and `arm` the mean distance of the contact from its center. While the object slides under
-// uniform pressure, L is the friction coefficient: exactly on both axes, within 1 % between them
-// for a disc. hypot(f, m) alone is the ellipse of Howe, Cutkosky, "Practical force-motion models
-// for sliding manipulation", 1996, of which the true limit curve falls short by up to 6.6 %. The
+// along equally. The load L of a contact is the least friction coefficient that holds it under even
+// pressure: the power of force and moment over the mean speed of the contact, for the sliding and
+// turning motion for which this is largest (principle of maximum dissipation: Goyal, Ruina,
+// Papadopoulos, "Planar sliding with dry friction", 1991). While the object slides, L is the
+// friction coefficient, whatever the shape of the contact and about whatever point it turns. The
 // published form has forces only, "F / N ~ F0 / N0": published/friction_ratio.hpp.
 #include <algorithm>
 #include <array>
@@ -19,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/dots.hpp"
@@ -30,15 +27,86 @@
 namespace fingerpad {
 inline namespace v1 {
 
-/// Load of a contact. NaN and values of a million or more mean unknown; an unknown moment counts as
-/// zero.
+/// Load of a contact. NaN and values of a million or more mean unknown.
 template <scalar S = double>
 struct ContactLoad {
   S normal_n = not_a_number<S>();      ///< F_n, positive under pressure
   S tangential_n = not_a_number<S>();  ///< F_t
-  S moment_n_mm = S(0);                ///< M_n
-  S arm_mm = S(0);                     ///< the moment counts only if this is > 0
+  S friction = not_a_number<S>();      ///< L; NaN: that of the forces alone, F_t / F_n
 };
+
+namespace detail {
+/// L of force (x, y) and moment z about the middle of the contact, all per normal force. The mean
+/// speed is made least by least squares with weights of one over the speed; four passes leave 2 %
+/// where the contact turns about one of two patches, 0.7 % in a rod and 0.01 % in a disc.
+template <scalar S, class ForEach>
+S least_friction(const Point3<S>& load, const ForEach& for_each_arm) {
+  using std::sqrt;
+  S friction = S(0), floor_sq = S(1);
+  Point3<S> slide = {S(0), S(0), S(0)};  // along x and y, and turning; the load has the power 1
+  for (int pass = 0; pass <= 4; ++pass) {
+    S speeds = S(0), count = S(0), weight = S(0), square_sum = S(0);
+    Point2<S> sum = {S(0), S(0)};
+    for_each_arm([&](const Point2<S>& arm) {
+      const S sq = square(slide.x - slide.z * arm.y) + square(slide.y + slide.z * arm.x);
+      const S speed = sqrt(floor_sq < sq ? sq : floor_sq), w = S(1) / speed;
+      speeds = speeds + speed;
+      count = count + S(1);
+      weight = weight + w;
+      sum += w * arm;
+      square_sum = square_sum + w * squared_norm(arm);
+    });
+    if (pass > 0) {
+      friction = count / speeds;
+      floor_sq = square(S(1e-3) / friction);
+    }
+    const S about = square_sum - squared_norm(sum) / weight;
+    const S turn =
+        S(0) < about ? (load.z + (sum.y * load.x - sum.x * load.y) / weight) / about : S(0);
+    const S x = (load.x + sum.y * turn) / weight, y = (load.y - sum.x * turn) / weight;
+    const S power = load.x * x + load.y * y + load.z * turn;
+    if (!(S(0) < power)) {
+      break;
+    }
+    slide = Point3<S>{x, y, turn} / power;
+  }
+  return friction;
+}
+
+/// `loads_at` gives force and moment about the middle of the contact, for its middle and normal.
+template <scalar S, class Dots, class Contact, class LoadsAt>
+ContactLoad<S> contact_load(const Dots& dots, const Contact& touch, const LoadsAt& loads_at) {
+  if (!same_size(dots, touch)) {
+    return {};
+  }
+  const auto for_each = [&](const auto& visit) {
+    for (Index i = 0; i < dots.rows(); ++i) {
+      for (Index j = 0; j < dots.cols(); ++j) {
+        const Point3<S> p = spatial_dot<S>(cell_t<Dots>(dots(i, j)));
+        if (is_contact(cell_t<Contact>(touch(i, j))) && is_finite(p)) {
+          visit(p);
+        }
+      }
+    }
+  };
+  const auto surface = stick::quadric_through<S>(for_each);
+  if (surface.dots < 3) {
+    return {};
+  }
+  const Point3<S> normal = surface.normal();
+  const Point3<S> x = normalized(Point3<S>{normal.z, S(0), -normal.x}), y = cross(normal, x);
+  const auto [force, about] = loads_at(surface.middle, normal);
+  const S moment = dot(about, normal), normal_n = -dot(force, normal);
+  const Point3<S> load = {dot(force, x), dot(force, y), is_plausible(moment) ? moment : S(0)};
+  return {normal_n, norm(force + normal_n * normal),
+          least_friction<S>(load / normal_n, [&](const auto& visit) {
+            for_each([&](const Point3<S>& p) {
+              const Point3<S> arm = p - surface.middle;
+              visit(Point2<S>{dot(arm, x), dot(arm, y)});
+            });
+          })};
+}
+}  // namespace detail
 
 /// Computes the load from the six-axis force and moment, which the object exerts on the pad, about
 /// Q, and from the dots in contact. The normal is that of the mean slope of the quadric through
@@ -48,54 +116,33 @@ ContactLoad<S> contact_load(const Point3<S>& force_n,
                             const Point3<S>& moment_n_mm,
                             const Dots& dots_mm,
                             const Contact& contact) {
-  const auto dots = as_view(dots_mm);
-  const auto touch = as_view(contact);
-  if (!same_size(dots, touch) || !is_plausible(force_n)) {
-    return {};
-  }
-  const auto for_each = [&](const auto& visit) {
-    for (Index i = 0; i < dots.rows(); ++i) {
-      for (Index j = 0; j < dots.cols(); ++j) {
-        const Point3<S> p = detail::spatial_dot<S>(cell_t<Dots>(dots(i, j)));
-        if (is_contact(cell_t<Contact>(touch(i, j))) && is_finite(p)) {
-          visit(p);
-        }
-      }
-    }
+  const auto loads = [&](const Point3<S>& middle, const Point3<S>&) {
+    return std::pair(force_n, moment_n_mm - cross(middle, force_n));
   };
-  const auto surface = detail::stick::quadric_through<S>(for_each);
-  if (surface.dots < 3) {
-    return {};
-  }
-  const Point3<S> normal = surface.normal();
-  S arms = S(0);
-  for_each([&](const Point3<S>& p) {
-    const Point3<S> arm = p - surface.middle;
-    arms = arms + norm(arm - dot(arm, normal) * normal);
-  });
-  const S normal_n = -dot(force_n, normal);
-  return {normal_n, norm(force_n + normal_n * normal),
-          dot(moment_n_mm - cross(surface.middle, force_n), normal),
-          arms / S(static_cast<double>(surface.dots))};
+  return detail::contact_load<S>(as_view(dots_mm), as_view(contact), loads);
+}
+/// The same from the force along the normal, > 0 under pressure, the one along the pad, and the
+/// moment about the normal through the middle of the contact, as a look-up has them.
+template <scalar S, spatial_dot_grid Dots, contact_mask Contact>
+ContactLoad<S> contact_load(const S& normal_n,
+                            const Point2<S>& tangential_n,
+                            const S& moment_n_mm,
+                            const Dots& dots_mm,
+                            const Contact& contact) {
+  const auto loads = [&](const Point3<S>&, const Point3<S>& normal) {
+    const Point3<S> t = {tangential_n.x, tangential_n.y, S(0)};
+    return std::pair(t - (dot(t, normal) + normal_n) * normal, moment_n_mm * normal);
+  };
+  return detail::contact_load<S>(as_view(dots_mm), as_view(contact), loads);
 }
 
 /// L; NaN unless the normal force is > 0 and both forces are known.
 template <scalar S>
 S friction_of(const ContactLoad<S>& load) {
-  using std::sqrt;
   if (!is_plausible(load.normal_n) || !is_plausible(load.tangential_n) || !(S(0) < load.normal_n)) {
     return not_a_number<S>();
   }
-  const bool turns =
-      is_plausible(load.moment_n_mm) && is_plausible(load.arm_mm) && S(0) < load.arm_mm;
-  const S along = load.tangential_n / load.normal_n;
-  const S about = turns ? load.moment_n_mm / (load.arm_mm * load.normal_n) : S(0);
-  const S sq = along * along + about * about;
-  if (!(S(0) < sq)) {
-    return sq;  // with a derivative at 0 as well
-  }
-  const S mixed = S(2) * along * about / sq;  // sine of twice the angle between the axes
-  return sqrt(sq) / (S(1) - S(0.067) * mixed * mixed);
+  return is_finite(load.friction) ? load.friction : load.tangential_n / load.normal_n;
 }
 
 /// How current a stick ratio is.
@@ -119,6 +166,10 @@ struct FrictionLimitOptions {
   /// less 2.4 times the noise of L. With both forces known to 1.5 %, L is known to 2.1 %.
   double slide_fraction = 0.95;
   double min_normal_n = 0.05;  ///< N, > 0: L is unknown with a smaller normal force
+  /// Whether the object is soft, as foam or skin: its surface shears before it slips, so dots that
+  /// fall behind need not slip. Anything from the ratio of the dots to 1 may then stick: the middle
+  /// is told, and is in doubt below 0.7.
+  bool soft_object = false;
 };
 /// Says which option has no meaning; "" if all have one.
 inline std::string check(const FrictionLimitOptions& o) {
@@ -253,9 +304,9 @@ class FrictionLimit {
   /// than noise does: then the ratio is that of this frame. Under an object that slides, the
   /// membrane springs back while the load stays: the last ratio applies, and a first slide is
   /// learnt if less than half stuck in it. The standard deviation grows where the limit lets the
-  /// object slide under this load, and where it is not known which answer holds, by a ratio
-  /// anywhere from 0 up. That of a slide which shows the limit for the first time rests on the dots
-  /// alone.
+  /// object slide under this load, and, by a ratio anywhere from 0 up, where it is not known which
+  /// answer holds and in the first answers after a slide. That of a slide which shows the limit for
+  /// the first time rests on the dots alone.
   template <scalar T>
   SlipResult<S> operator()(const ContactLoad<S>& load, const StickResult<T>& seen) {
     using std::sqrt;
@@ -278,19 +329,24 @@ class FrictionLimit {
     SlipResult<S> result = (*this)(load, ratio, update);
     const bool slid = result.status == FrictionLimitStatus::sliding;
     if (!slid) {
-      result.ratio_sd = held_sd(result, sd);
+      sd = follows_slide_ ? sqrt(sd * sd + ratio * ratio / S(3)) : sd;
+      const S shear = options_.soft_object ? S(1) - ratio : S(0);
+      result.stick_ratio = result.stick_ratio + shear / S(2);
+      result.ratio_sd = held_sd(result, sqrt(sd * sd + shear * shear / S(12)));
     } else if (falls_back) {
       result.ratio_sd = zero_sd(S(seen.back_ratio), result.friction);
     } else if (!had_limit && result.ratio_sd < sd) {
       result.ratio_sd = sd;
     }
+    const bool fresh = !falls_back && update == RatioUpdate::fresh;
+    follows_slide_ = slid || (follows_slide_ && !fresh);
     result.evidence = carried && !slid ? SlipEvidence::both : result.evidence;
     result.reference_age = age;
     result.falls_back = falls_back;
-    const bool fresh = !falls_back && update == RatioUpdate::fresh;
     result.may_slide = fresh && !(S(least_stick) < ratio - S(seen.least_sd()));
     result.in_doubt = seen.far_apart || !(square(result.ratio_sd) < S(guess_sq)) ||
                       (slid && fresh && !(ratio < S(least_stick))) ||
+                      (options_.soft_object && !slid && result.stick_ratio < S(0.7)) ||
                       (result.status == FrictionLimitStatus::no_load && ratio < S(0.8));
     return result;
   }
@@ -393,6 +449,7 @@ class FrictionLimit {
   S limit_;
   std::array<S, 64> loads_;  ///< of the last frames; NaN: unknown
   std::size_t next_ = 0;
+  bool follows_slide_ = false;  ///< no dots have answered by themselves since the last slide
 };
 
 }  // namespace v1

@@ -265,9 +265,8 @@ struct FingertipDots {
                                      touching.view())
                       : ContactLoad<double>{};
     }
-    const double radius_mm = std::sqrt(touch.contact.area_mm2 / std::numbers::pi);
-    return {touch.normal.force_n, norm(touch.shear.tangential_force_n), touch.shear.moment_n_mm,
-            2.0 / 3 * radius_mm};
+    return contact_load(touch.normal.force_n, touch.shear.tangential_force_n,
+                        touch.shear.moment_n_mm, at_mm.view(), touching.view());
   }
 };
 
