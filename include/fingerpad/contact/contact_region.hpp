@@ -292,11 +292,15 @@ class ContactRegion {
            std::sqrt(std::numbers::pi * pixel_aspect_ * static_cast<double>(region.pixels()));
   }
 
-  /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Its
-  /// properties come from one to two thousand of its pixels, or from all if there are fewer.
-  /// Returns the standard deviation of its area in mm^2.
+  /// Means over a region, from one to two thousand of its pixels, or from all if there are fewer,
+  /// and the lower quartile of the mean curvature: a quarter of a disc lies so far inside that its
+  /// ring sees only the object, if the disc is twice as wide as the ring.
+  struct Inside {
+    S quarter;
+    double depth_mm, free_per_mm;
+  };
   template <class View>
-  double place_edge(const View& depth_mm, detail::Regions::Region& region) {
+  Inside look_inside(const View& depth_mm, const detail::Regions::Region& region) {
     samples_.clear();
     double depth = 0, outside = 0;
     for (Index k = region.begin; k < region.end; k += region.pixels() / most + 1) {
@@ -306,18 +310,40 @@ class ContactRegion {
       samples_.push_back(mean_[static_cast<std::size_t>(at)]);
     }
     const double count = static_cast<double>(samples_.size());
-    // that of the object is at most 0 and the lower quartile, because a quarter of the pixels lie
-    // so far inside that their ring sees only the object
     const auto quarter = samples_.begin() + static_cast<std::ptrdiff_t>(samples_.size() / 4);
     std::nth_element(samples_.begin(), quarter, samples_.end());
-    const S inside = (std::min)(*quarter, S(0));
-    const double jump = outside / count - static_cast<double>(value(inside));
-    const double pixel_mm = pitch_mm_ * (1 + growth_per_mm_ * depth / count);
-    const double patch_mm = pixel_mm * std::sqrt(static_cast<double>(region.pixels()) *
-                                                 pixel_aspect_ / std::numbers::pi);
+    return {*quarter, depth / count, outside / count};
+  }
+
+  /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Returns
+  /// the standard deviation of its area in mm^2.
+  template <class View>
+  double place_edge(const View& depth_mm, detail::Regions::Region& region) {
+    Inside found = look_inside(depth_mm, region);
+    const double pixel_mm = pitch_mm_ * (1 + growth_per_mm_ * found.depth_mm);
+    const double ring_mm = test_.ring_px * pixel_mm;
+    const auto radius_mm = [&] {
+      return pixel_mm *
+             std::sqrt(static_cast<double>(region.pixels()) * pixel_aspect_ / std::numbers::pi);
+    };
+    double patch_mm = radius_mm();
+    if (found.quarter > S(0)) {
+      // a hollow or soft object bulges like the membrane, but less: seeds are parts of it only
+      regions_.grow(region, image_.size(), [&](Index at) {
+        return mean_[static_cast<std::size_t>(at)] < (found.quarter + S(free_per_mm(at))) / S(2);
+      });
+      if (radius_mm() > 2 * ring_mm) {
+        found = look_inside(depth_mm, region);
+        patch_mm = radius_mm();
+      } else {
+        found.quarter = S(0);  // too small to tell: flat
+      }
+    }
+    const S inside = found.quarter;
+    const double jump = found.free_per_mm - static_cast<double>(value(inside));
     const S share =
-        S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm, test_.ring_px * pixel_mm,
-                                          patch_mm, static_cast<double>(spread_cols_) * pixel_mm)
+        S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm, ring_mm, patch_mm,
+                                          static_cast<double>(spread_cols_) * pixel_mm)
                    : 0.0);
     const auto within = [&](Index at) {
       return mean_[static_cast<std::size_t>(at)] < inside + share * (S(free_per_mm(at)) - inside);
@@ -327,7 +353,7 @@ class ContactRegion {
 
     // across a straight edge, the ring's mean rises by 4 / pi of the jump per ring radius; its
     // noise moves stretches of the edge as long as the ring is wide, each by itself
-    const double ring_mm = test_.ring_px * pixel_mm, edge_mm = perimeter_mm(region, pixel_mm);
+    const double edge_mm = perimeter_mm(region, pixel_mm);
     const double gap_mm = std::sqrt(test_.touching_gap_mm / jump);
     const double moved_mm =
         (std::min)(free_sd_per_mm_ / jump * std::numbers::pi / 4, 1.0) * ring_mm;

@@ -172,8 +172,12 @@ class Wrench {
   }
 
   /// Force and moment from the marks of a frame, which nothing touches. O(marks x parameters^2);
-  /// allocates nothing. The fit begins at that of the last frame.
-  WrenchResult operator()(std::span<const Mark> marks, double pressure_mpa) {
+  /// allocates nothing. The fit begins at that of the last frame. Where the places of the marks are
+  /// the mean of so many free pictures, the noise of the gauge in those counts, too; 0: they are
+  /// known otherwise.
+  WrenchResult operator()(std::span<const Mark> marks,
+                          double pressure_mpa,
+                          Index free_pictures = 0) {
     WrenchResult result;
     const double load = pressure_mpa / options_.modulus_n_per_mm;
     if (!(is_finite(load) && load > 0) || (!begun_ && !begin(pressure_mpa))) {
@@ -206,7 +210,7 @@ class Wrench {
     }
     const double degrees = freedom();
     result.misfit = std::sqrt(misfit_ / degrees);
-    read_load(static_cast<double>(2 * places_.size()) / degrees, result);
+    read_load(static_cast<double>(2 * places_.size()) / degrees, free_pictures, result);
     result.status = result.misfit > 2.5                  ? WrenchStatus::poor_fit
                     : is_uncertain(result, pressure_mpa) ? WrenchStatus::uncertain
                                                          : WrenchStatus::ok;
@@ -432,7 +436,7 @@ class Wrench {
 
   /// The variance of each residual is its square times `per_square`, so that no sd_px need be
   /// right; that of each parameter known before is what it is known to.
-  void read_load(double per_square, WrenchResult& result) {
+  void read_load(double per_square, Index free_pictures, WrenchResult& result) {
     tangent_.slopes_of_load({of_load_.data(), static_cast<std::size_t>(of_load_.size())});
     const double modulus = options_.modulus_n_per_mm, less = 0.005;
     const Axes axes = axes_after_step(modulus);
@@ -444,30 +448,40 @@ class Wrench {
     rhs_[load] = 1;
     solver_.matrixL().solveInPlace(rhs_);
     result.pressure_sd_mpa = modulus * rhs_.norm();
-    Axes by_modulus = Axes::Zero();
-    if (options_.modulus_sd_share > 0) {
-      fit_to_modulus(less);
-      by_modulus =
-          (axes - axes_after_step(modulus * (1 - less))) * (options_.modulus_sd_share / less);
-    }
+    fit_to_modulus(less);
+    const Axes by_modulus = (axes - axes_after_step(modulus * (1 - less))) / less;
     for (Eigen::Index k = 0; k < 6; ++k) {  // one by one, because a block allocates
       auto column = of_load_.col(k).head(gradient_.size());
       solver_.solveInPlace(column);
     }
-    result.covariance = by_modulus * by_modulus.transpose();
-    const auto add = [&](double variance, const auto& by_parameters) {
+    const auto through = [&](const auto& by_parameters) {
       Axes by;
       for (Eigen::Index k = 0; k < 6; ++k) {
         by[k] = modulus * of_load_.col(k).head(gradient_.size()).dot(by_parameters);
       }
+      return by;
+    };
+    const auto add = [&](double variance, const Axes& by) {
       result.covariance += variance * by * by.transpose();
     };
+    result.covariance.setZero();
+    add(square(options_.modulus_sd_share), by_modulus);
+    const bool has_gauge = options_.pressure_sd_share < 1;
+    if (has_gauge && free_pictures > 0) {
+      // force is mu t times what follows from p / (mu t) and the places: a wrong modulus changes
+      // the factor, the load of the frame, and the places as a wrong gauge in a free picture does
+      const Axes by_load =
+          through(weight_.back() * centre_.back() * Eigen::VectorXd::Unit(gradient_.size(), load));
+      add(square(options_.pressure_sd_share) / static_cast<double>(free_pictures),
+          axes - by_modulus - by_load);
+    }
     for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
       add(per_square * square(weights_[row] * residuals_[row]),
-          slopes_.row(row).head(gradient_.size()).transpose());
+          through(slopes_.row(row).head(gradient_.size()).transpose()));
     }
     for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
-      add(weight_[static_cast<std::size_t>(k)], Eigen::VectorXd::Unit(gradient_.size(), k));
+      add(weight_[static_cast<std::size_t>(k)],
+          through(Eigen::VectorXd::Unit(gradient_.size(), k)));
     }
   }
 

@@ -425,7 +425,7 @@ struct FingertipWrench {
                          dot.sd_px * std::sqrt(1 + 1.0 / dot.frames)});
       }
     }
-    return wrench(marks, pressure_mpa);
+    return wrench(marks, pressure_mpa, (std::min)(learnt, free_frames));
   }
 
   void find_axis() {
