@@ -49,11 +49,12 @@ def peers(tables, path):
             axes.plot([float(ms)] * 2, [min(errors), max(errors)], color=colour, lw=1)
             axes.plot(float(ms), errors[0], "o", color=colour, mfc=colour if few else "white", ms=6)
             axes.annotate(name.replace("`", "").split(",")[0], (float(ms), errors[0]), textcoords="offset points",
-                          xytext=(6, -11 if name == "`DotFinder`" else 4), fontsize=7, color=colour)
+                          xytext=(6, -11 if "Dot" in name else 14 if "LK" in name else 4), fontsize=7, color=colour)
         axes.set_title(title, loc="left", weight="bold")
         axes.set(xscale="log", yscale="log", ylabel="error, px")
         axes.margins(x=0.3, y=0.25)
         logarithmic(axes.xaxis, "x")
+    figure.suptitle("Lower left is better: fast and accurate. Blue: fingerpad; grey: what users write with OpenCV", fontsize=10)
     panels[-1].set_xlabel("time of a frame, ms (dot: clean; line: all conditions; hollow: over 5 % lost in one)")
     save(figure, path)
 
