@@ -42,51 +42,6 @@ auto tell(Search& search, const std::string& signal) {
   }
   return command;
 }
-template <class Search>
-auto told(Search search, const std::string& signal) {
-  return tell(search, signal);
-}
-
-/// The phase after each letter of the signal:
-/// s(ettling), w(atching), F(ound), L(ifted), A(t limit), X (slipped).
-template <class Search>
-std::string phases(const Search& search, const std::string& signal) {
-  auto state = search;
-  std::string all;
-  for (const char letter : signal) {
-    all += "swFLAX"[static_cast<int>(state(update_of(letter)).phase)];
-  }
-  return all;
-}
-/// The force after each letter of the signal; the plans here keep it to one digit.
-template <class Search>
-std::string forces(const Search& search, const std::string& signal) {
-  auto state = search;
-  std::string all;
-  for (const char letter : signal) {
-    all += std::to_string(std::lround(state(update_of(letter)).force_n));
-  }
-  return all;
-}
-
-LoosenOptions<double> short_plan() {
-  return {.first_force_n = 9,
-          .min_force_n = 7,
-          .step_n = 1,
-          .settle_samples = 2,
-          .watch_samples = 3,
-          .margin_steps = 1};
-}
-
-LiftOptions<double> short_lift() {
-  return {.first_force_n = 1,
-          .max_force_n = 3,
-          .force_step_n = 1,
-          .height_mm = 10,
-          .height_step_mm = 4,
-          .settle_samples = 2};
-}
-
 template <class Plan, class Field>
 void check_refused(Field Plan::*field, const std::string& name, std::initializer_list<Field> bad) {
   const bool loosens = std::is_same_v<Plan, LoosenOptions<double>>;
@@ -113,235 +68,6 @@ std::string refusal_of(const LiftOptions<double>& plan) {
 }
 
 }  // namespace
-
-TEST_CASE("loosening: settles, watches, loosens, down to the least force", "[holding_force]") {
-  const LoosenUntilPreslip<double> search(short_plan());
-  const auto first = search.command();
-  CHECK(first.force_n == 9);
-  CHECK(first.phase == SearchPhase::settling);
-  CHECK(first.steps == 0);
-  CHECK(std::isnan(first.preslip_force_n));
-  CHECK(first.warning_steps == 0);
-
-  const std::string steady(18, '-');
-  // the first sample after the settling is the first watched one
-  CHECK(phases(search, steady) ==
-        "sswws"
-        "sswws"
-        "sswwA"
-        "AAA");
-  CHECK(forces(search, steady) ==
-        "99998"
-        "88887"
-        "77777"
-        "777");
-  const auto end = told(search, steady);
-  CHECK(end.phase == SearchPhase::at_limit);
-  CHECK(end.steps == 2);
-  CHECK(end.force_n == 7);
-  CHECK(std::isnan(end.preslip_force_n));
-  CHECK(end.warning_steps == 0);
-}
-
-TEST_CASE("loosening: pre-slip ends it, with the margin given back", "[holding_force]") {
-  auto plan = short_plan();
-  const auto found = [&](const std::string& signal) {
-    return told(LoosenUntilPreslip<double>(plan), signal);
-  };
-  // at each of the three watched samples
-  for (const char* const signal : {"-------p", "--------p", "---------p"}) {
-    CAPTURE(signal);
-    const auto at_8 = found(signal);
-    CHECK(at_8.phase == SearchPhase::found);
-    CHECK(at_8.preslip_force_n == 8);
-    CHECK(at_8.force_n == 9);
-    CHECK(at_8.steps == 1);
-    CHECK(at_8.warning_steps == 0);
-  }
-  CHECK(found("------------p").preslip_force_n == 7);
-  CHECK(found("------------p").force_n == 8);
-  plan.margin_steps = 0;
-  CHECK(found("------------p").force_n == 7);
-  plan.margin_steps = 2;
-  CHECK(found("------------p").force_n == 9);
-  plan.margin_steps = 1000000;  // at most the first force
-  CHECK(found("------------p").force_n == 9);
-  CHECK(found("--p").force_n == 9);
-  CHECK(found("--p").preslip_force_n == 9);
-  CHECK(found("--p").phase == SearchPhase::found);
-}
-
-TEST_CASE("loosening: while the last step settles, only a slip is listened to", "[holding_force]") {
-  const LoosenUntilPreslip<double> search(short_plan());
-  CHECK(phases(search,
-               "pp---"
-               "pp---"
-               "pp--p") ==
-        "sswws"
-        "sswws"
-        "sswwF");
-  CHECK(told(search,
-             "pp---"
-             "pp---")
-            .steps == 2);
-  for (const char* const signal : {"x", "-x", "--x", "-----x", "-----px", "--------x"}) {
-    CAPTURE(signal);
-    const auto end = told(search, signal);
-    CHECK(end.phase == SearchPhase::slipped);
-    CHECK(end.force_n == 9);  // the first force again
-    CHECK(std::isnan(end.preslip_force_n));
-  }
-}
-
-TEST_CASE("loosening until the object slips counts the steps of warning", "[holding_force]") {
-  auto plan = short_plan();
-  plan.min_force_n = 1;
-  plan.until_slipped = true;
-  const LoosenUntilPreslip<double> search(plan);
-  auto state = search;
-  CHECK(tell(state,
-             "-----"
-             "--p")
-            .phase == SearchPhase::watching);
-  CHECK(state.command().preslip_force_n == 8);
-  CHECK(state.command().force_n == 8);
-  CHECK(state.command().warning_steps == 0);
-  auto now = tell(state, "p-");  // the rest of the watch: it is not shortened
-  CHECK(now.phase == SearchPhase::settling);
-  CHECK(now.force_n == 7);
-  CHECK(now.warning_steps == 1);
-  now = tell(state,
-             "pp-p-"
-             "--ppp");
-  CHECK(now.force_n == 5);
-  CHECK(now.preslip_force_n == 8);  // where it was found first
-  CHECK(now.warning_steps == 3);
-  CHECK(now.steps == 4);
-  now = tell(state, "x");
-  CHECK(now.phase == SearchPhase::slipped);
-  CHECK(now.force_n == 9);
-  CHECK(now.warning_steps == 3);
-  CHECK(now.preslip_force_n == 8);
-  // pre-slip on the last watched sample
-  now = told(search, "----p");
-  CHECK(now.force_n == 8);
-  CHECK(now.preslip_force_n == 9);
-  CHECK(now.warning_steps == 1);
-  // without any slip the search ends at the least force
-  now = told(search, "--p--" + std::string(40, '-'));
-  CHECK(now.phase == SearchPhase::at_limit);
-  CHECK(now.force_n == 1);
-  CHECK(now.warning_steps == 8);
-}
-
-TEST_CASE("loosening: forces do not collect rounding, and the last step may be short",
-          "[holding_force]") {
-  LoosenOptions<double> plan{.first_force_n = 10,
-                             .min_force_n = 0.25,
-                             .step_n = 0.1,
-                             .settle_samples = 0,
-                             .watch_samples = 1};
-  const LoosenUntilPreslip<double> search(plan);
-  auto state = search;
-  for (int k = 1; k <= 97; ++k) {
-    const auto now = state(PreslipStatus::steady);
-    CHECK(now.force_n == 10 - k * 0.1);
-    CHECK(now.steps == k);
-  }
-  CHECK(state(PreslipStatus::steady).force_n == 0.25);
-  CHECK(state.command().phase == SearchPhase::settling);
-  CHECK(state(PreslipStatus::steady).phase == SearchPhase::at_limit);
-  CHECK(state.command().steps == 98);
-  plan.step_n = 1000;  // one step to the least force
-  CHECK(told(LoosenUntilPreslip<double>(plan), "-").force_n == 0.25);
-  CHECK(told(LoosenUntilPreslip<double>(plan), "--").phase == SearchPhase::at_limit);
-}
-
-TEST_CASE("lifting: up in steps to the full height", "[holding_force]") {
-  const LiftWithRegrip<double> search(short_lift());
-  const auto first = search.command();
-  CHECK(first.force_n == 1);
-  CHECK(first.height_mm == 0);
-  CHECK(first.phase == SearchPhase::watching);
-  CHECK(first.steps == 0);
-  auto state = search;
-  CHECK(tell(state, "-").height_mm == 4);
-  CHECK(tell(state, "-").height_mm == 8);
-  CHECK(state.command().phase == SearchPhase::watching);
-  CHECK(tell(state, "-").height_mm == 10);  // not 12
-  CHECK(state.command().phase == SearchPhase::lifted);
-  CHECK(state.command().force_n == 1);
-  // a step that divides the height ends exactly on it
-  LiftOptions<double> plan = short_lift();
-  plan.height_step_mm = 5;
-  CHECK(told(LiftWithRegrip<double>(plan), "-").phase == SearchPhase::watching);
-  CHECK(told(LiftWithRegrip<double>(plan), "--").phase == SearchPhase::lifted);
-  plan.height_step_mm = 0.1;
-  auto slow = LiftWithRegrip<double>(plan);
-  for (int k = 1; k < 100; ++k) {
-    CHECK(slow(PreslipStatus::steady).height_mm == k * 0.1);
-  }
-}
-
-TEST_CASE("lifting: pre-slip holds the lift and tightens the grip", "[holding_force]") {
-  const LiftWithRegrip<double> search(short_lift());
-  auto state = search;
-  auto now = tell(state, "-p");
-  CHECK(now.phase == SearchPhase::settling);
-  CHECK(now.force_n == 2);
-  CHECK(now.height_mm == 4);
-  CHECK(now.steps == 1);
-  now = tell(state, "p-");  // ignored
-  CHECK(now.phase == SearchPhase::settling);
-  CHECK(now.force_n == 2);
-  CHECK(now.height_mm == 4);
-  CHECK(tell(state, "-").height_mm == 8);
-  CHECK(state.command().phase == SearchPhase::watching);
-  now = tell(state, "p");
-  CHECK(now.force_n == 3);
-  CHECK(now.steps == 2);
-  now = tell(state, "-p-");  // settled again from the start
-  CHECK(now.phase == SearchPhase::lifted);
-  CHECK(now.height_mm == 10);
-  CHECK(now.force_n == 3);
-
-  // pre-slip right after the settling
-  CHECK(told(search, "p--p").force_n == 3);
-  CHECK(phases(search, "pppppp") == "ssssss");
-  CHECK(forces(search, "pppppp") == "222333");
-  // at the largest force the search ends
-  now = told(search, "-p--p--p");
-  CHECK(now.phase == SearchPhase::at_limit);
-  CHECK(now.force_n == 3);
-  CHECK(now.height_mm == 0);
-  CHECK(now.steps == 2);
-  // and it goes on if the largest force suffices
-  CHECK(told(search, "-p--p----").phase == SearchPhase::lifted);
-
-  LiftOptions<double> plan = short_lift();
-  plan.settle_samples = 0;
-  CHECK(forces(LiftWithRegrip<double>(plan), "pp-") == "233");
-  CHECK(phases(LiftWithRegrip<double>(plan), "pp-p") == "sswA");
-  plan.force_step_n = 1.5;  // the last step may be short
-  CHECK(told(LiftWithRegrip<double>(plan), "p").force_n == 2.5);
-  CHECK(told(LiftWithRegrip<double>(plan), "pp").force_n == 3);
-  plan.max_force_n = plan.first_force_n;  // nothing to tighten
-  CHECK(told(LiftWithRegrip<double>(plan), "p").phase == SearchPhase::at_limit);
-  CHECK(told(LiftWithRegrip<double>(plan), "-p").height_mm == 0);
-}
-
-TEST_CASE("lifting: an object that slips is put down at once", "[holding_force]") {
-  const LiftWithRegrip<double> search(short_lift());
-  for (const char* const signal : {"x", "-x", "-px", "-p-x", "--p--x"}) {
-    CAPTURE(signal);
-    const std::string before(signal, std::string(signal).size() - 1);
-    const auto end = told(search, signal);
-    CHECK(end.phase == SearchPhase::slipped);
-    CHECK(end.height_mm == 0);
-    CHECK(end.force_n == told(search, before).force_n);
-    CHECK(end.steps == told(search, before).steps);
-  }
-}
 
 TEST_CASE("searches: bad plans are refused by name, value and range", "[holding_force]") {
   using Loosen = LoosenOptions<double>;
@@ -582,6 +308,15 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     }
     RC_ASSERT(is_end(state.command().phase));
   });
+  rc::prop("while a step settles, pre-slip is not listened to", [] {
+    auto plan = any_loosen_plan();
+    plan.until_slipped = false;
+    const LoosenUntilPreslip<double> search(plan);
+    News signal(static_cast<std::size_t>(plan.settle_samples), PreslipStatus::preslip);
+    RC_ASSERT(equal(after(search, signal), search.command()));
+    signal.push_back(PreslipStatus::preslip);
+    RC_ASSERT(after(search, signal).phase == SearchPhase::found);
+  });
   rc::prop("copies and repetitions give the same commands",
            [] { check_copies(LoosenUntilPreslip<double>(any_loosen_plan()), any_news(100)); });
   rc::prop("pre-slip that comes earlier finds a larger force", [] {
@@ -709,6 +444,15 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     RC_ASSERT(after(search, longest).phase == SearchPhase::lifted);
     longest.pop_back();
     RC_ASSERT(!is_end(after(search, longest).phase));
+  });
+  rc::prop("while the grip tightens, pre-slip is not listened to", [] {
+    auto plan = any_lift_plan();
+    plan.max_force_n = plan.first_force_n + 2 * plan.force_step_n;
+    const LiftWithRegrip<double> search(plan);
+    News signal(static_cast<std::size_t>(1 + plan.settle_samples), PreslipStatus::preslip);
+    RC_ASSERT(after(search, signal).steps == 1);
+    signal.push_back(PreslipStatus::preslip);
+    RC_ASSERT(after(search, signal).steps == 2);
   });
   rc::prop("copies and repetitions give the same commands",
            [] { check_copies(LiftWithRegrip<double>(any_lift_plan()), any_news(100)); });

@@ -33,6 +33,7 @@ std::vector<double> ratios(const std::vector<DotGrid>& frames,
 struct Followed {
   std::vector<cv::Mat> images;
   std::vector<DotGrid> dots;
+  DotGrid free_dots;
   double dot_px = 0;
 };
 
@@ -45,6 +46,7 @@ Followed follow(const std::filesystem::path& file) {
   recording.reference = recording.frames.next();
   replay::DotSource dots = replay::DotSource::of_dots_only(file, recording);
   Followed followed;
+  followed.free_dots = dots.initial();
   followed.dot_px = dots.diameter_px();
   recording.frames.seek(0);
   for (int frame = 0; frame < recording.frames.size(); ++frame) {
@@ -64,7 +66,8 @@ View look_at(const std::filesystem::path& file, const std::vector<cv::Mat>& free
     // the contact is unknown, so every dot counts as in contact
     view.ratio = ratios(frames, {.covers_pattern = true});
     if (!free_frames.empty()) {
-      view.slide = slide_in(followed.images, frames, followed.dot_px, free_frames);
+      view.slide =
+          slide_in(followed.images, frames, followed.free_dots, followed.dot_px, free_frames);
     }
   } catch (const replay::Failure& failure) {
     view = {};

@@ -94,9 +94,10 @@ std::vector<cv::Mat> free_frames_for(const Trial& trial, const std::vector<Trial
 
 SlideSeries slide_in(const std::vector<cv::Mat>& frames,
                      const std::vector<DotGrid>& dots,
+                     const DotGrid& free_dots,
                      double dot_px,
                      const std::vector<cv::Mat>& free_frames) {
-  replay::SlideStep step(free_frames, dots.front(), dot_px);
+  replay::SlideStep step(free_frames, free_dots, dot_px);
   cv::Mat_<std::uint8_t> mask(frames.front().size());
   SlideSeries series;
   series.end = frames.size();

@@ -25,9 +25,10 @@ struct SlideSeries {
 /// agree. May be empty.
 std::vector<cv::Mat> free_frames_for(const Trial& trial, const std::vector<Trial>& trials);
 
-/// `dot_px`: diameter of the dots.
+/// `free_dots`: where they are first found; `dot_px`: their diameter.
 SlideSeries slide_in(const std::vector<cv::Mat>& frames,
                      const std::vector<replay::DotGrid>& dots,
+                     const replay::DotGrid& free_dots,
                      double dot_px,
                      const std::vector<cv::Mat>& free_frames);
 
