@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The center of one printed disc in a picture: least squares of light, contrast and center against
-// the picture of the disc seen through a map of second order, edge blurred. A centroid is drawn
-// aside by the map's second derivative and by uneven light; both are in the picture here.
+// the picture of an ellipse whose edge is blurred. A centroid is drawn aside by uneven light, which
+// is fitted here, and by the second derivative of the map from print to picture, as the ellipse is:
+// by how much follows from the map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +29,8 @@ struct DiscMap {
   Point2<double> qaa = {0, 0}, qab = {0, 0}, qbb = {0, 0};
 };
 
-/// a^2 + b^2 - 1 as a polynomial of third order in the offset (x, y) from the center, px: the
-/// inverse of the map, whose terms beyond the third order are left out.
+/// a^2 + b^2 as a polynomial in the offset (x, y) from the center, px, without the map's second
+/// order; and how far that moves the ellipse that fits the rim best.
 struct DiscRim {
   explicit DiscRim(const DiscMap& map) {
     const double det = map.ja.x * map.jb.y - map.jb.x * map.ja.y;
@@ -40,17 +41,12 @@ struct DiscRim {
     yy = float(ay * ay + by * by);
     const auto a_of = [&](const Point2<double>& q) { return ax * q.x + ay * q.y; };
     const auto b_of = [&](const Point2<double>& q) { return bx * q.x + by * q.y; };
-    const double aaa = a_of(map.qaa), aab = 2 * a_of(map.qab) + b_of(map.qaa);
-    const double abb = a_of(map.qbb) + 2 * b_of(map.qab), bbb = b_of(map.qbb);
-    // aaa a^3 + aab a^2 b + abb a b^2 + bbb b^3 with a = ax x + ay y, b = bx x + by y
-    xxx = -float(aaa * ax * ax * ax + aab * ax * ax * bx + abb * ax * bx * bx + bbb * bx * bx * bx);
-    xxy = -float(3 * aaa * ax * ax * ay + aab * (ax * ax * by + 2 * ax * ay * bx) +
-                 abb * (bx * bx * ay + 2 * bx * by * ax) + 3 * bbb * bx * bx * by);
-    xyy = -float(3 * aaa * ax * ay * ay + aab * (ay * ay * bx + 2 * ax * ay * by) +
-                 abb * (by * by * ax + 2 * bx * by * ay) + 3 * bbb * bx * by * by);
-    yyy = -float(aaa * ay * ay * ay + aab * ay * ay * by + abb * ay * by * by + bbb * by * by * by);
+    // the rim's shift q(angle) / 2 along the normal, times twice the normal: means over the angle
+    bend = (3 * a_of(map.qaa) + a_of(map.qbb) + 2 * b_of(map.qab)) / 8 * map.ja +
+           (3 * b_of(map.qbb) + b_of(map.qaa) + 2 * a_of(map.qab)) / 8 * map.jb;
   }
-  float xx, xy, yy, xxx, xxy, xyy, yyy;
+  float xx, xy, yy;
+  Point2<double> bend;
 };
 
 struct DiscFit {
@@ -119,12 +115,14 @@ class DotLocator {
     constexpr int most = 5;
     constexpr double short_px = 0.5, longest_px = 1.5;
     const DiscRim rim(map);
+    guess += rim.bend;
     DiscFit fit;
     for (int k = 0; k < most; ++k) {
       fit = load(image, guess, map, edge_px) ? step(guess, rim, edge_px, slope) : DiscFit();
       const Point2<double> move = fit.center - guess;
       const double length = norm(move);
       if (!fit.good || length < short_px) {
+        fit.center = fit.center - rim.bend;
         return fit;
       }
       slope = fit.slope;
@@ -250,18 +248,16 @@ class DotLocator {
     Line() = default;
     Line(const DiscRim& r, float at, const Point2<double>& slope)
         : y(V{} + at),
-          a0(V{} + (at * at * (r.yy + r.yyy * at) + 1e-6F)),
-          a1(V{} + at * (r.xy + r.xyy * at)),
-          a2(V{} + (r.xx + r.xxy * at)),
-          a3(V{} + r.xxx),
-          b0(V{} + at * (2 * r.yy + 3 * r.yyy * at)),
-          b1(V{} + (r.xy + 2 * r.xyy * at)),
-          b2(V{} + r.xxy),
+          a0(V{} + (at * at * r.yy + 1e-6F)),
+          a1(V{} + at * r.xy),
+          a2(V{} + r.xx),
+          b0(V{} + 2 * at * r.yy),
+          b1(V{} + r.xy),
           light(V{} + (1 + float(slope.y) * at)),
           light_x(V{} + float(slope.x)) {}
-    V y, a0, a1, a2, a3;  ///< distance from the center, in radii, squared
-    V b0, b1, b2;         ///< its derivative by y
-    V light, light_x;     ///< relative to that at the center
+    V y, a0, a1, a2;   ///< distance from the center, in radii, squared
+    V b0, b1;          ///< its derivative by y
+    V light, light_x;  ///< relative to that at the center
   };
 
   /// The picture of the disc at offsets x from its center.
@@ -270,10 +266,10 @@ class DotLocator {
     Edge() = default;
     [[gnu::always_inline]] Edge(const Line<V>& l, const V& x, float width) {
       const V one = V{} + 1.0F;
-      const V ax = l.a3 * x, axx = (ax + l.a2) * x;
-      const V square = (axx + l.a1) * x + l.a0;
-      const V fx = (ax + l.a2 + ax + ax + l.a2) * x + l.a1;
-      const V fy = (l.b2 * x + l.b1) * x + l.b0;
+      const V ax = l.a2 * x, first = ax + l.a1;
+      const V square = first * x + l.a0;
+      const V fx = first + ax;
+      const V fy = l.b1 * x + l.b0;
       const V inverse = rough_inverse_sqrt<V>(fx * fx + fy * fy + 1e-6F);
       // distance from the edge, in its widths
       const V t = (square - square * rough_inverse_sqrt<V>(square)) * inverse * (2.0F / width);
