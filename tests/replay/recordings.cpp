@@ -150,7 +150,8 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
         "moment_z_nm,wrench_status,"
         "wrench_fx_n,wrench_fy_n,wrench_fz_n,wrench_mx_nm,wrench_my_nm,wrench_mz_nm,"
         "wrench_fx_sd_n,wrench_fy_sd_n,wrench_fz_sd_n,wrench_mx_sd_nm,wrench_my_sd_nm,"
-        "wrench_mz_sd_nm,slide_status,contact_area_px,contact_center_x_px,contact_center_y_px,slide_dots,"
+        "wrench_mz_sd_nm,slide_status,contact_area_px,contact_center_x_px,contact_center_y_px,"
+        "slide_dots,"
         "slide_x_px,slide_y_px,slide_pitches,area_lost,slide_evidence,slip");
   const auto columns = std::count(line.begin(), line.end(), ',');
   std::getline(table, line);
@@ -190,7 +191,7 @@ TEST_CASE("sensor.json is refused with the key's name") {
       Fault{"\"pitch_mm\": 0.08", "\"pich_mm\": 0.08", "unknown key camera.pich_mm"},
       Fault{"\"smoothing_px\": 29", "\"smooth\": 29", "unknown key smooth "},
       Fault{"\"smoothing_px\"", "\"stick\": {\"slipp_px\": 1}, \"smoothing_px\"",
-            "unknown key stick.slipp_px (known keys: noise_px, covers_pattern)"},
+            "unknown key stick.slipp_px (known keys: noise_px, covers_pattern, soft_object)"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"noise_px\": -1}, \"smoothing_px\"",
             "stick.noise_px = -1"},
       Fault{"\"smoothing_px\"", "\"stick\": {\"noise_px\": \"1\"}, \"smoothing_px\"",

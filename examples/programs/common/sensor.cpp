@@ -148,10 +148,12 @@ DotPattern read_pattern(const Section& root) {
   return pattern;
 }
 
-fingerpad::StickOptions read_stick(const Section& root) {
+fingerpad::StickOptions read_stick(const Section& root, bool& soft_object) {
   const Section section = root.section(
       "stick", {{"noise_px", "standard deviation of a dot along x and along y, px"},
-                {"covers_pattern", "whether the object is larger than the dot pattern"}});
+                {"covers_pattern", "whether the object is larger than the dot pattern"},
+                {"soft_object", "whether the object shears before it slips, as foam does"}});
+  soft_object = section.has("soft_object") && section.truth("soft_object");
   fingerpad::StickOptions options;
   options.covers_pattern = section.has("covers_pattern") && section.truth("covers_pattern");
   if (section.has("noise_px")) {
@@ -428,7 +430,7 @@ Sensor read_sensor(const std::filesystem::path& file, const nlohmann::json& cont
   }
   if (root.has("stick")) {
     try {
-      sensor.stick = read_stick(root);
+      sensor.stick = read_stick(root, sensor.soft_object);
     } catch (const fingerpad::parameter_error& error) {
       fail(file, error.what());
     }

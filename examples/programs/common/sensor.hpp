@@ -95,6 +95,7 @@ struct Sensor {
   bool dots_only = false;          ///< if true, camera, absorption, pad and dots are empty
   DotPattern pattern;              ///< only of a dots-only recording
   fingerpad::StickOptions stick;   ///< lengths in px
+  bool soft_object = false;        ///< for the friction limit
   std::optional<Contact> contact;  ///< empty: threshold from the free pad
   std::optional<ForceLookUp> force;
   std::optional<Rim> rim;

@@ -32,9 +32,10 @@ double threshold_of_shape(const Recording& recording) {
 }
 
 /// A noise in px becomes one in mm. Without it, it is measured from frame to frame.
-void set_stick(const Sensor& sensor, fingerpad::StickOptions& options) {
-  options.covers_pattern = sensor.stick.covers_pattern;
-  options.noise = sensor.stick.noise * sensor.camera.pitch_mm;
+void set_stick(const Sensor& sensor, FingertipOptions& options) {
+  options.stick.covers_pattern = sensor.stick.covers_pattern;
+  options.stick.noise = sensor.stick.noise * sensor.camera.pitch_mm;
+  options.friction.soft_object = sensor.soft_object;
 }
 
 void set_look_up(const ForceLookUp& given, FingertipOptions& options) {
@@ -82,7 +83,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   (void)fingerpad::spatial_dots(sensor.camera, free_dots_px, shape_mm, dots_mm);
   options.free_dots_mm = kept(dots_mm, settings.free_dots_mm);
   options.dot_radius_px = sensor.dots ? sensor.dots->diameter_mm / 2 / sensor.camera.pitch_mm : 0.0;
-  set_stick(sensor, options.stick);
+  set_stick(sensor, options);
   if (const auto& light = sensor.neighbour_light) {
     options.neighbour_light = {light->radius_px, static_cast<float>(light->m0_mm_per_rad),
                                static_cast<float>(light->n_per_mm)};
