@@ -22,7 +22,6 @@
 
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/core/detail/vectors.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/membrane/annulus.hpp"

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/detail/small_matrices.hpp"

@@ -7,7 +7,6 @@
 // exceeds 1. Here every angle comes from atan2.
 #include <cmath>
 
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 

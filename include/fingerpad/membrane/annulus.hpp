@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/membrane/free_pad.hpp"

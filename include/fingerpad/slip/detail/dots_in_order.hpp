@@ -4,7 +4,6 @@
 // Whether the whole pattern has been labelled otherwise than before, for example shifted by a
 // pitch.
 #include "fingerpad/core/dots.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 #include "fingerpad/math/rigid_fit.hpp"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "fingerpad/core/detail/vectors.hpp"
-#include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
 
