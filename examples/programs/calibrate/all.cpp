@@ -23,8 +23,9 @@ struct About {
   DotPlate plate;
   PadSize pad;
   RimNoise rim;
-  json dots;       ///< of the printed grid, for sensor.json; null if there is none
-  json side_dots;  ///< of the rows around the rim, likewise
+  double pressure_mpa = 0;  ///< of the free pad; 0: not told
+  json dots;                ///< of the printed grid, for sensor.json; null if there is none
+  json side_dots;           ///< of the rows around the rim, likewise
 };
 
 About read_about(const Path& file) {
@@ -42,6 +43,7 @@ About read_about(const Path& file) {
     about.pad.stress_free_height_mm = content.value("mould_cap_height_mm", 0.0);
     about.rim.base_radius_mm = about.pad.base_radius_mm;
     about.rim.stress_free_height_mm = about.pad.stress_free_height_mm;
+    about.pressure_mpa = content.value("working_pressure_mpa", 0.0);
     about.dots = content.value("dots", json());
     about.side_dots = content.value("side_dots", json());
     const json camera = content.value("camera", json::object());
@@ -95,7 +97,7 @@ bool all(const Path& folder) {
       {"absorption",
        {"pad/free", "pad/frames", "pad/presses.csv"},
        [&] { return absorption(pad, sensor); }},
-      {"contact", {"pad/free"}, [&] { return contact(pad, sensor); }},
+      {"contact", {"pad/free"}, [&] { return contact(pad, sensor, about.pressure_mpa); }},
       {"rim", {"rim/apex.csv", "rim/signals.csv"}, [&] { return rim(folder / "rim", about.rim); }}};
   std::filesystem::remove(sensor);
   std::filesystem::remove(pad / "reference.png");

@@ -53,8 +53,9 @@ Outcome absorption(const Path& recording, const Path& sensor);
 /// Light from neighbouring membrane, from the same data, with radii up to `max_radius_px`.
 Outcome neighbour_light(const Path& recording, const Path& sensor, int max_radius_px);
 
-/// The contact threshold, from free/.
-Outcome contact(const Path& recording, const Path& sensor);
+/// The contact threshold, from free/, and the smallest press that is found: in N with the pad's
+/// pressure, else (0) per MPa.
+Outcome contact(const Path& recording, const Path& sensor, double pressure_mpa);
 
 /// Noise of the dots, from free/, and the thresholds of slip that follow from it, to read.
 Outcome dots(const Path& recording, const Path& sensor);

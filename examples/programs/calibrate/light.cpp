@@ -296,6 +296,11 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
   report.doubt(replay::step_between_blocks(known.reference, pad) > replay::compressed_step,
                "the pictures were compressed: depths are right to what is left over, but c_red and "
                "c_green err by more than their sd; calibrate with PNG or raw pictures");
+  report.doubt(
+      left_mm > 0.05 && fit.red_blur > 5 * sd(fit.parameters - 1),
+      "red is blurred more than green, as by a mosaic that is interpolated, and depths at "
+      "known places are off by more than 0.05 mm: c_green less c_red errs by more than its "
+      "sd; give raw pictures of the mosaic, or a lens that blurs by a pixel");
   const bool mixed = sd(0) > fluid.c_red_per_mm / 2;
   report.doubt(depth_sd > 0.05,
                std::string("the fit alone makes depths uncertain by more than 0.05 mm") +
@@ -361,7 +366,7 @@ Outcome neighbour_light(const Path& recording, const Path& sensor_file, int max_
   return outcome;
 }
 
-Outcome contact(const Path& recording, const Path& sensor_file) {
+Outcome contact(const Path& recording, const Path& sensor_file, double pressure_mpa) {
   replay::Sensor sensor = known_sensor(sensor_file, {"camera", "pad", "reference", "absorption"});
   cv::Mat reference;
   DepthMap free_mm;
@@ -372,16 +377,18 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
       replay::fail(recording / "free", "the frames must have the size of the reference");
     }
   }
-  // Noise may set the threshold, and not the edge: then a wider window and a wider ring average it
-  // away. The ring takes the larger share, since a window biases depth where a small object
-  // presses.
-  const int first_px = window_px(sensor);
+  // Noise may set the threshold, and not the edge: then a wider window and a wider ring, in turn,
+  // average it away. The ring takes the larger share, since a window biases depth where a small
+  // object presses.
+  const int first_px = window_px(sensor), wider_px = (std::max)(2, first_px / 8 * 2);
   replay::Contact found;
   std::vector<DepthMap> depths_mm;
   fingerpad::ThresholdFit<double> pad;
-  for (int width = first_px; width <= 2 * first_px; width += width / 8 * 2) {
-    sensor.smoothing_px = width;
-    found.ring_px = fingerpad::ContactTest().ring_px * std::pow(double(width) / first_px, 2);
+  constexpr int last_step = 8;
+  for (int step = 0; step <= last_step; ++step) {
+    sensor.smoothing_px = first_px + wider_px * ((step + 1) / 2);
+    const double wider = 1 + double(wider_px * (step / 2)) / first_px;
+    found.ring_px = fingerpad::ContactTest().ring_px * wider * wider;
     DepthMeter meter(sensor, reference, free_mm);
     depths_mm.clear();
     for (const cv::Mat& frame : frames) {
@@ -390,7 +397,7 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
     try {
       pad = fit_contact_threshold(sensor.camera, depths_mm, found.ring_px);
     } catch (const fingerpad::parameter_error&) {  // all noise
-      if (width + width / 8 * 2 > 2 * first_px) {
+      if (step == last_step) {
         throw;
       }
       continue;
@@ -413,13 +420,15 @@ Outcome contact(const Path& recording, const Path& sensor_file) {
                        {"depth_noise_mm", *found.depth_noise_mm},
                        {"smoothing_px", double(*sensor.smoothing_px)},
                        {"free_frames_that_seem_touched", double(limit.false_frames)},
-                       {"smallest_press_mm", limit.depth_mm},
-                       {"smallest_press_n_per_mpa", limit.area_mm2()}};
+                       {"felt_from_mm", limit.depth_mm},
+                       {pressure_mpa > 0 ? "felt_from_n" : "felt_from_n_per_mpa",
+                        limit.area_mm2() * (pressure_mpa > 0 ? pressure_mpa : 1)}};
   report.doubt(!pad.ok(), text_of(pad));
   report.doubt(2 * cv::countNonZero(last == last) < cv::countNonZero(free_mm == free_mm),
                "fewer than half of the pad's pixels have a depth: check calibration, exposure and "
                "frame");
-  report.doubt(frames.size() < 3, "two frames are too few to estimate the noise: record ten");
+  report.doubt(frames.size() < 3,
+               "two frames are too few to estimate the noise: record sixteen or more");
   report.doubt(pad.threshold_per_mm < 0.4 * pad.median_per_mm,
                "the threshold is set by the noise instead of the edge: use more light");
   Outcome outcome;

@@ -65,6 +65,7 @@ struct Arguments {
   calibrate::DotPlate plate;
   calibrate::PadSize size;
   int max_radius_px = 50;
+  double pressure_mpa = 0;
   calibrate::RimNoise rim;
   calibrate::Plan plan;
   Path contacts, gauge, practice, finger, today;
@@ -121,9 +122,11 @@ void add_light(CLI::App& app, Common& common, Arguments& given, std::function<Ou
       },
       work);
   sub->add_option("--max-radius-px", given.max_radius_px, "largest radius that is searched");
-  add(
-      app, common, "contact", "threshold of contact, from free/",
-      [&] { return calibrate::contact(common.recording, common.sensor()); }, work);
+  sub = add(
+      app, common, "contact", "threshold of contact, from free/, and the smallest press it finds",
+      [&] { return calibrate::contact(common.recording, common.sensor(), given.pressure_mpa); },
+      work);
+  sub->add_option("--pressure-mpa", given.pressure_mpa, "pressure of the free pad");
 }
 
 void add_dots(CLI::App& app, Common& common, std::function<Outcome()>& work) {

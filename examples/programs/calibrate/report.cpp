@@ -16,18 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 json number_or_null(double value) {
   return std::isfinite(value) ? json(value) : json();
-}
-
-/// The number in `entry`; null stands for an unknown value.
-double number_in(const fs::path& file, const std::string& name, const json& entry) {
-  if (!entry.is_number() && !entry.is_null()) {
-    replay::fail(file, name + " is " + entry.dump() + ", must be a number or null");
-  }
-  return entry.is_null() ? none : entry.get<double>();
 }
 
 }  // namespace
@@ -72,41 +62,6 @@ json to_json(const Report& report) {
   return entry;
 }
 
-Report report_of(const fs::path& file, const std::string& what, const json& entry) {
-  const std::string name = "calibration." + what;
-  const replay::JsonSection section(file, name, entry,
-                                    {{"verdict", "good or doubtful"},
-                                     {"because", "why it is doubtful"},
-                                     {"residual", "residual of the fit"},
-                                     {"residual_unit", "unit of the residual"},
-                                     {"parameters", "by name: [value, standard error]"},
-                                     {"covariance", "covariance of the parameters"}});
-  Report report;
-  report.what = what;
-  report.verdict =
-      section.one_of("verdict", {"good", "doubtful"}) == "good" ? Verdict::good : Verdict::doubtful;
-  report.because = section.has("because") ? section.path("because") : "";
-  report.residual = number_in(file, name + ".residual", section.at("residual"));
-  report.residual_unit = section.path("residual_unit");
-  const json& parameters = section.at("parameters");
-  for (const auto& item : parameters.items()) {
-    const json& pair = item.value();
-    if (!parameters.is_object() || !pair.is_array() || pair.size() != 2) {
-      section.refuse("parameters must be { name: [value, standard error] }");
-    }
-    report.parameters.push_back({item.key(), number_in(file, name + "." + item.key(), pair[0]),
-                                 number_in(file, name + "." + item.key(), pair[1])});
-  }
-  if (section.has("covariance")) {
-    try {
-      report.covariance = section.at("covariance").get<std::vector<std::vector<double>>>();
-    } catch (const json::exception&) {
-      section.refuse("covariance must be rows of numbers [[...], ...]");
-    }
-  }
-  return report;
-}
-
 void save(const Outcome& outcome, const fs::path& file) {
   json content = fs::exists(file) ? replay::parse_json(file) : json::object();
   replay::expects_known_version(file, content);
@@ -122,18 +77,6 @@ void save(const Outcome& outcome, const fs::path& file) {
     content["calibration"][report.what] = to_json(report);
   }
   replay::write_file(file, content.dump(2) + "\n");
-}
-
-std::vector<Report> load_reports(const fs::path& file) {
-  const json content = replay::parse_json(file);
-  replay::expects_known_version(file, content);
-  std::vector<Report> reports;
-  if (content.contains("calibration")) {
-    for (const auto& item : content.at("calibration").items()) {
-      reports.push_back(report_of(file, item.key(), item.value()));
-    }
-  }
-  return reports;
 }
 
 void write_plot(const Plot& plot, const fs::path& file) {

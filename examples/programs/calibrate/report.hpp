@@ -66,17 +66,11 @@ struct Outcome {
 void print(const Report& report);
 void print(const Refusal& refusal);
 
-/// Convert a report to JSON and back without loss. Reading refuses unknown keys; `file` is for the
-/// message. Throws replay::Failure.
+/// A report as sensor.json keeps it, without loss; null stands for an unknown value.
 nlohmann::json to_json(const Report& report);
-Report report_of(const std::filesystem::path& file,
-                 const std::string& what,
-                 const nlohmann::json& entry);
 
 /// Writes the outcome into `file` atomically. Throws replay::Failure.
 void save(const Outcome& outcome, const std::filesystem::path& file);
-/// Reads the reports of earlier calibrations in `file`. Throws replay::Failure.
-std::vector<Report> load_reports(const std::filesystem::path& file);
 
 /// Writes a plot as a .csv file for plot.py. Throws replay::Failure.
 void write_plot(const Plot& plot, const std::filesystem::path& file);

@@ -56,8 +56,9 @@ cv::Mat read_colour_image(const std::filesystem::path& file, const PictureFormat
 /// elsewhere. About 1 in raw pictures and up to 1.26 after a mosaic; JPEG and video keep colours in
 /// such blocks.
 double step_between_blocks(const cv::Mat& frame, const cv::Mat_<uchar>& pad);
-/// More than in pictures that were never compressed.
-constexpr double compressed_step = 1.35;
+/// More than in pictures that were never compressed, and more than where depth errs by its noise
+/// alone if the reference is compressed alike: JPEG of quality 85 at 180 grey levels, 98 at 57.
+constexpr double compressed_step = 1.35, worst_compressed_step = 1.9;
 
 /// Reads a 32-bit float image of one channel, mm; throws Failure.
 cv::Mat_<float> read_depth_image(const std::filesystem::path& file);

@@ -81,7 +81,7 @@ Chain::Chain(Recording& recording, const Options& options)
       traction_(traction_step_of(recording, options)) {
   if (fingertip_) {
     pad_ = recording.reference_depth > 0;
-    compressed_step_ *= std::max(1.0, step_between_blocks(recording.reference, pad_));
+    reference_step_ = std::max(1.0, step_between_blocks(recording.reference, pad_));
   }
 }
 
@@ -93,7 +93,9 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.dots = std::move(seen.dots);
   scene.touch = seen.touch;
   scene.has_depth = true;
-  scene.compressed = step_between_blocks(scene.image, pad_) > compressed_step_;
+  const double step = std::max(1.0, step_between_blocks(scene.image, pad_));
+  scene.compressed = step > worst_compressed_step || step > compressed_step * reference_step_ ||
+                     reference_step_ > compressed_step * step;
   scene.has_rim = seen.has_rim;
   scene.has_curves = recording_.sensor.force.has_value();
   describe_depth(scene);

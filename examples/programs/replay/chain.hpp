@@ -37,9 +37,7 @@ class Chain {
   StickStep stick_;                           ///< for dots-only recordings
   TractionStep traction_;                     ///< empty if the recording lacks data for it
   cv::Mat_<uchar> pad_;                       ///< 255 where the reference has a depth
-  /// Between blocks of a frame that was compressed more than the reference, on which it is
-  /// calibrated.
-  double compressed_step_ = compressed_step;
+  double reference_step_ = 1;                 ///< between its blocks
   std::vector<double> frame_ms_;
 };
 

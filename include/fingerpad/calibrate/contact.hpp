@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The threshold of the contact test, from frames of the free pad: half of the pad's own curvature,
-// the level at the edge of a contact (straight, whatever the radius of the ring), or less if the
-// noise demands it. Source: the slides, consideration of calculation error, delta = min over the
-// pad of E - 2 sigma, with the mean E of a pixel over the frames and its standard deviation sigma.
-// As published, the single worst pixel sets the threshold, and its sigma takes dozens of frames.
-// Here a quantile replaces the minimum and the sigma of the whole pad that of a pixel.
+// the level at the edge of a contact (straight, whatever the radius of the ring), or less if noise
+// would make a contact of more than one free frame in 10,000. Source: the slides, consideration of
+// calculation error, delta = min over the pad of E - 2 sigma, with the mean E of a pixel over the
+// frames and its standard deviation sigma. A pixel says nothing about a region, though, and the
+// pixel of 300,000 that is lowest lies beyond 2 sigma. Here each frame says at which level noise
+// makes a region that counts. As the lowest of many places it follows the law of least values
+// (Gumbel), which a mean and a standard deviation extrapolate.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -35,7 +37,8 @@ struct [[nodiscard]] ThresholdFit {
   /// Standard error of the median, from the scatter of the frames' medians; half of it is that of a
   /// threshold set by the level. NaN for a single frame.
   S median_error_per_mm = not_a_number<S>();
-  S noise_per_mm = S(0);  ///< root mean square of sigma over the pad; 0 for a single frame
+  S region_per_mm = S(0);  ///< level at which noise makes a region in a free frame, mean
+  S noise_per_mm = S(0);   ///< standard deviation of that level; 0 for a single frame
 
   bool ok() const { return cause == nullptr; }
 };
@@ -53,15 +56,51 @@ struct Scatter {
   }
 };
 
+/// The level below which `pixels` connected pixels lie, between two others.
+template <scalar S>
+S level_of_region(const StridedView<S>& curvature, Regions& regions, Index pixels, S low, S high) {
+  for (int round = 0; round < 20; ++round) {
+    const S middle = (low + high) / S(2);
+    for (Index i = 0; i < curvature.rows(); ++i) {
+      mark_below(middle, curvature.row(i), curvature.cols(), regions.marks().row(i));
+    }
+    bool is_found = false;
+    (void)regions.for_each(
+        [&](const Regions::Region& region) {
+          is_found = is_found || region.pixels() >= pixels;
+          return false;
+        },
+        [](Regions::Region&) {});
+    (is_found ? high : low) = middle;
+  }
+  return high;
+}
+
+/// By how many standard deviations the level that is undercut in one of 10,000 frames lies below
+/// their mean, by Gumbel's law, and one standard error of that from so many frames. Fewer than 16
+/// say nothing of rare ones: two, as published.
+inline double rarely_below(double frames, int running) {
+  if (frames < 16) {
+    return 2;
+  }
+  const double share = std::pow(1e-4, 1.0 / running);
+  const double k =
+      -(std::numbers::egamma + std::log(-std::log1p(-share))) * std::sqrt(6) / std::numbers::pi;
+  return k + std::sqrt((1 + 1.1396 * k + 1.1 * k * k) / frames);
+}
+
 }  // namespace detail
 
-/// min(median / 2, quantile - 2 sigma) of the mean curvatures E, with the quantile 0.001: about
-/// that share of a free pad may be taken for contact. Takes a container of depth maps of the free
-/// pad in mm: one determines the level, two the noise. Camera and ring must be those of the contact
-/// test. Pixels without a curvature in a frame do not count. Refuses bad parameters, frames of
-/// several sizes, and a pad without a positive threshold (parameter_error). Not ok: a pad flatter
-/// than a sphere of 1 m. Curvatures are computed in S, as in the contact test, and summed in double
-/// if S is float. Allocates; O(frames rows cols directions).
+/// Half of the median curvature or, if that is less, what free frames undercut in `running` frames
+/// one after the other once in 10,000: for a caller who believes a contact that is found in so many
+/// (1 to 3). Takes a container of depth maps of the free pad in mm: one determines the level, 300
+/// the noise; from fewer the threshold is lower, by the error that they leave, and from fewer than
+/// 16 it is two standard deviations below the mean, whatever `running`. Camera, ring and
+/// `region_px` must be those of the contact test. Pixels without a curvature in a frame do not
+/// count. Refuses bad parameters, frames of several sizes, and a pad without a positive threshold
+/// (parameter_error). Not ok: a pad flatter than a sphere of 1 m. Curvatures are computed in S, as
+/// in the contact test, and summed in double if S is float. Allocates; O(frames rows cols
+/// directions).
 template <scalar S = float,
           class CameraType,
           class Frames,
@@ -69,55 +108,49 @@ template <scalar S = float,
 ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
                                       const Frames& free_mm,
                                       double ring_px = 25,
-                                      int directions = 18) {
+                                      int directions = 18,
+                                      Index region_px = 200,
+                                      int running = 1) {
   const char* const owner = "fit_contact_threshold";
   expects(std::size(free_mm) > 0, owner, "number of frames", 0LL, ">= 1");
+  require(owner, {{"region_px", region_px, at_least(1)}, {"running", running, within(1, 3)}});
   const auto first = as_view(*std::begin(free_mm));
   const Index rows = first.rows(), cols = first.cols();
   CurvatureMap<S> map(camera, rows, cols, ring_px, directions);
-  std::vector<S> curvature(static_cast<std::size_t>(rows * cols));
-  std::vector<T> known;
-  std::vector<detail::Scatter<T>> pixels(curvature.size());
-  detail::Scatter<T> median;
-  const auto quantile = [](std::vector<T>& of, double share) {
-    const auto at = of.begin() + static_cast<Index>(share * static_cast<double>(of.size() - 1));
-    std::nth_element(of.begin(), at, of.end());
-    return *at;
-  };
+  const detail::BorderedImage image{rows, cols};
+  detail::Regions regions(image);
+  std::vector<S> curvature(static_cast<std::size_t>(rows * cols)), known;
+  const StridedView<S> seen(curvature.data(), rows, cols, cols);
+  detail::Scatter<T> median, level;
   T count = T(0);  // of frames
   for (const auto& depth_mm : free_mm) {
-    const bool fits = map(depth_mm, StridedView<S>(curvature.data(), rows, cols, cols)).has_value();
+    const bool fits = map(depth_mm, seen).has_value();
     expects(fits, owner, "rows of a frame", static_cast<long long>(as_view(depth_mm).rows()),
             "of the same size as the first frame");
     count += T(1);
     known.clear();
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      pixels[k].add(T(curvature[k]), count);
-      if (is_finite(pixels[k].mean)) {
-        known.push_back(T(curvature[k]));
-      }
-    }
+    std::copy_if(curvature.begin(), curvature.end(), std::back_inserter(known),
+                 [](const S& k) { return is_finite(k); });
     expects(!known.empty(), owner, "pixels", 0LL, ">= 1 with a curvature in every frame");
-    median.add(quantile(known, 0.5), count);
-  }
-  known.clear();
-  T squares = T(0);
-  for (const detail::Scatter<T>& pixel : pixels) {
-    if (is_finite(pixel.mean)) {
-      known.push_back(pixel.mean);
-      squares += pixel.squares;
-    }
+    const auto middle = known.begin() + static_cast<Index>(known.size() / 2);
+    std::nth_element(known.begin(), middle, known.end());
+    const S lowest = *std::min_element(known.begin(), middle + 1);
+    median.add(T(*middle), count);
+    level.add(T(detail::level_of_region(seen, regions, region_px, lowest, *middle)), count);
   }
   ThresholdFit<T> fit;
+  fit.median_per_mm = median.mean;
+  fit.region_per_mm = level.mean;
+  T lowered = T(0);
   if (T(1) < count) {
     using std::sqrt;
     const auto root = [](const T& x) { return T(0) < x ? sqrt(x) : T(0); };
-    fit.noise_per_mm = root(squares / (T(static_cast<double>(known.size())) * (count - T(1))));
     fit.median_error_per_mm = root(median.squares / (count * (count - T(1))));
+    fit.noise_per_mm = root(level.squares / (count - T(1)));
+    lowered =
+        T(detail::rarely_below(static_cast<double>(value(count)), running)) * fit.noise_per_mm;
   }
-  fit.median_per_mm = quantile(known, 0.5);
-  fit.threshold_per_mm =
-      (std::min)(fit.median_per_mm / T(2), quantile(known, 0.001) - T(2) * fit.noise_per_mm);
+  fit.threshold_per_mm = (std::min)(fit.median_per_mm / T(2), fit.region_per_mm - lowered);
   expects(
       T(0) < fit.threshold_per_mm, owner, "threshold_per_mm", fit.threshold_per_mm,
       "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");
