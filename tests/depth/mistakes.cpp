@@ -162,6 +162,19 @@ const FrameMistake with_a_frame[] = {
        return out;
      },
      FrameStatus::not_of_this_pad},
+    {"no depth but near the rim",
+     [](const Frame8& f) {
+       Frame8 out = f;
+       for (Index i = 0; i < 240; ++i) {
+         for (Index j = 0; j < 320; ++j) {
+           const double px =
+               std::hypot(static_cast<double>(i) - 119.5, static_cast<double>(j) - 159.5);
+           out.red(i, j) = static_cast<std::uint8_t>(f.red(i, j) / (px > 95 ? 1 : 2));
+         }
+       }
+       return out;
+     },
+     FrameStatus::not_of_this_pad},
     {"a frame of another size", [](const Frame8&) { return Frame8(240, 319, 60); },
      FrameStatus::refused},
 };

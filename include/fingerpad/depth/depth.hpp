@@ -46,7 +46,8 @@ inline std::string check(const DepthOptions& options) {
 
 /// The outcome of a frame. not_of_this_pad: depths were written, but the rim of the pad is more
 /// than 5 % lighter or darker than in the reference, or mostly dark or saturated: another lamp or
-/// gain, an aged membrane, another pixel layout. Take a new reference.
+/// gain, an aged membrane, another pixel layout. Take a new reference. The same where fewer than
+/// half of the pad's pixels have a depth.
 struct [[nodiscard]] DepthResult {
   FrameStatus status = FrameStatus::refused;
   Index pad_pixels = 0;  ///< pixels with a depth and g > 0 in the reference
@@ -135,7 +136,8 @@ class DepthEstimator {
         detail::store_row(status_.data(), as_view(status), i);
       }
     }
-    result.status = rim_.has_changed(from_red, from_green, light_.green)
+    const bool is_unknown = 2 * result.valid_pixels() < pad_pixels_;
+    result.status = is_unknown || rim_.has_changed(from_red, from_green, light_.green)
                         ? FrameStatus::not_of_this_pad
                         : FrameStatus::ok;
     return result;
