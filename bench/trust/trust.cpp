@@ -462,7 +462,7 @@ class Judge {
     if (motion.has_pose() && !motion.begun && begun_) {
       const Pose<double> moved = pose_of(scene_.steps[step]) * inverse(begun_->pose);
       add(step, "rotation", 57.29578 * angle_between(motion.pose.rotation, moved.rotation), 3.2,
-          57.29578 * motion.rotation_sd_rad, motion.ok());
+          57.29578 * motion.rotation_sd_rad, !touch.rotation_in_doubt);
       const auto off = motion.position_mm - moved(begun_->place_mm);
       add(step, "place", norm(off), 0.072, motion.position_sd_mm, motion.ok());
     }

@@ -221,6 +221,7 @@ void bind_result(py::module_& module) {
                     "depth or free depth is of another pad, light or unit")
       .def_readonly("contact_in_doubt", &Result::contact_in_doubt)
       .def_readonly("lacks_motion", &Result::lacks_motion)
+      .def_readonly("rotation_in_doubt", &Result::rotation_in_doubt)
       .def_readonly("lacks_stick_ratio", &Result::lacks_stick_ratio)
       .def_readonly("lacks_look_up", &Result::lacks_look_up)
       .def_readonly("lacks_wrench", &Result::lacks_wrench)

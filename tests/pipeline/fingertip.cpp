@@ -648,6 +648,8 @@ TEST_CASE("a pose that may be off by more than what counts as wrong is doubtful"
     for (const FingertipResult& touch : run.results) {
       poses += touch.motion.has_pose() ? 1 : 0;
       sure += touch.motion.ok() ? 1 : 0;
+      // where the object begins, its place is as uncertain as later, and its rotation is none
+      CHECK(touch.rotation_in_doubt == (!touch.motion.ok() && !touch.motion.begun));
     }
     CAPTURE(noise_mm, poses, sure);
     CHECK(poses > 0);

@@ -90,6 +90,8 @@ struct [[nodiscard]] FingertipResult {
                                   ///< light_in_doubt()
   bool contact_in_doubt = false;  ///< whether it touches, or how far, is not certain
   bool lacks_motion = false;      ///< no pose
+  /// Whether the rotation of the pose is; that of a doubtful pose is not, where only its place is.
+  bool rotation_in_doubt = true;
   bool lacks_stick_ratio = false;
   bool lacks_look_up = false;  ///< no normal force by look-up
   bool lacks_wrench = false;   ///< no six axes

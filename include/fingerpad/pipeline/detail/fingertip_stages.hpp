@@ -251,9 +251,11 @@ struct FingertipDots {
     pose.position_sd_mm = std::hypot(pose.position_sd_mm, touch.depth_light_sd_mm);
     // one that mostly sticks has not slid as a whole, whatever its ratio
     const bool may_have_slid = touch.slip.in_doubt && touch.slip.stick_ratio < 0.8;
-    const bool is_known = 2 * pose.position_sd_mm < most_place_mm &&
-                          2 * pose.rotation_sd_rad < most_rotation_rad && !may_have_slid;
-    pose.status = pose.ok() && !is_known ? MotionStatus::doubtful : pose.status;
+    const bool is_place_known = 2 * pose.position_sd_mm < most_place_mm;
+    touch.rotation_in_doubt =
+        !pose.ok() || !(2 * pose.rotation_sd_rad < most_rotation_rad) || may_have_slid;
+    const bool is_doubted = pose.ok() && (touch.rotation_in_doubt || !is_place_known);
+    pose.status = is_doubted ? MotionStatus::doubtful : pose.status;
   }
 
   /// The load from the six axes where they exist, else from the look-up; never from one after the
