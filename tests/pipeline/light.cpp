@@ -123,7 +123,7 @@ TEST_CASE("a light that drifts during a press is in doubt before the depth is wr
       const auto touch = play(true, greens *= green, reds *= red);
       is_doubted = touch.depth_in_doubt;
       CAPTURE(k, touch.depth_light_sd_mm);
-      CHECK((is_doubted || play.error_mm() < 0.06));
+      CHECK((is_doubted || play.error_mm() < 0.05));
     }
     CHECK(is_doubted);
     (void)play(false, greens, reds);
