@@ -50,6 +50,7 @@ double median_within(const cv::Mat_<float>& values, const cv::Mat_<uchar>& pad) 
 /// Light in a set of frames, compared with the reference and with the previous frame.
 struct Light {
   double saturated = 0;              ///< largest share
+  double brightest = 0;              ///< place of the pad, grey levels
   double level = 0;                  ///< median of the frames' medians, grey levels
   std::vector<double> of_reference;  ///< median of frame / reference
   double noise = std::numeric_limits<double>::infinity();  ///< least, grey levels
@@ -92,6 +93,11 @@ Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uch
     seen.dark = std::fmin(seen.dark, cv::countNonZero((ratio < 0.5) & pad) /
                                          static_cast<double>(cv::countNonZero(pad)));
     levels.push_back(median_within(light, pad));
+    cv::Mat smooth;
+    double most = 0;
+    cv::blur(light, smooth, {9, 9});
+    cv::minMaxLoc(smooth, nullptr, &most, nullptr, nullptr, pad);
+    seen.brightest = std::fmax(seen.brightest, most);
     seen.of_reference.push_back(median_within(ratio, pad));
     blocks.push_back(step_between_blocks(frame, pad));
     seen.saturated = std::fmax(seen.saturated, saturated_share(frame, pad));
@@ -202,6 +208,10 @@ void check_light(Recording& recording, Findings& findings) {
   }
   const Light frames = light_in(recording.frames, recording.reference, pad);
   tell_exposure("frames", frames, findings);
+  findings.push_back({"frames",
+                      "where the pad is brightest, red and green use " +
+                          percent(frames.brightest / 255) + " of the range",
+                      "With more light depth errs less, in proportion.", false});
   if (frames.touched.empty()) {
     return;  // no frame can be read
   }
