@@ -66,6 +66,7 @@ void bind_contact(py::module_& module) {
       .def_readonly("regions", &ContactResult::regions)
       .def_readonly("area_mm2", &ContactResult::area_mm2)
       .def_readonly("area_sd_mm2", &ContactResult::area_sd_mm2)
+      .def_readonly("pressed_mm2", &ContactResult::pressed_mm2)
       .def_readonly("depth_mm", &ContactResult::depth_mm)
       .def_property_readonly(
           "center_mm", [](const ContactResult& contact) { return as_tuple(contact.center_mm); });

@@ -76,6 +76,11 @@ struct [[nodiscard]] ContactResult {
   /// the edge as the noise of the free membrane's curvature moves it. Where the edge is not placed,
   /// it may lie anywhere within the ring's radius.
   double area_sd_mm2 = 0;
+  /// The area, of each region by the share of the fluid's pressure that the object takes: all of it
+  /// where it is flat, the less the more it bulges with the membrane. Times the pressure this is
+  /// what the object presses with, without the membrane's pull around it. Where the edge is not
+  /// placed, all of the area.
+  double pressed_mm2 = 0;
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
@@ -162,16 +167,23 @@ class ContactRegion {
     const auto keep = [this](const detail::Regions::Region& region) {
       return region.pixels() >= test_.min_region_px;
     };
+    double pressed_px = 0;
     result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
       if (test_.places_edge) {
-        result.area_sd_mm2 += place_edge(depth, region);
+        const Edge edge = place_edge(depth, region);
+        result.area_sd_mm2 += edge.area_sd_mm2;
+        pressed_px += edge.pressure_share * static_cast<double>(region.pixels());
       } else {
         result.area_sd_mm2 +=
             perimeter_mm(region, pitch_mm_) * test_.ring_px * pitch_mm_ / std::numbers::sqrt3;
+        pressed_px += static_cast<double>(region.pixels());
       }
     });
     write(marks, to);
     measure(marks, depth, result);
+    if (result.in_contact()) {
+      result.pressed_mm2 = result.area_mm2 * pressed_px / static_cast<double>(result.contact_px);
+    }
     result.status = is_of_this_pad(result) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
     return result;
   }
@@ -315,10 +327,14 @@ class ContactRegion {
     return {*quarter, depth / count, outside / count};
   }
 
-  /// Grows and trims a region to the pixels whose mean curvature is below that of its end. Returns
-  /// the standard deviation of its area in mm^2.
+  struct Edge {
+    double area_sd_mm2, pressure_share;
+  };
+
+  /// Grows and trims a region to the pixels whose mean curvature is below that of its end. By Young
+  /// and Laplace, an object takes the share of the pressure by which the curvature falls.
   template <class View>
-  double place_edge(const View& depth_mm, detail::Regions::Region& region) {
+  Edge place_edge(const View& depth_mm, detail::Regions::Region& region) {
     Inside found = look_inside(depth_mm, region);
     const double pixel_mm = pitch_mm_ * (1 + growth_per_mm_ * found.depth_mm);
     const double ring_mm = test_.ring_px * pixel_mm;
@@ -358,8 +374,9 @@ class ContactRegion {
     const double moved_mm =
         (std::min)(free_sd_per_mm_ / jump * std::numbers::pi / 4, 1.0) * ring_mm;
     const double stretches = (std::max)(edge_mm / (2 * ring_mm), 1.0);
-    return jump > 0 ? edge_mm * std::sqrt(square(gap_mm) + square(moved_mm) / stretches)
-                    : edge_mm * ring_mm;
+    return {jump > 0 ? edge_mm * std::sqrt(square(gap_mm) + square(moved_mm) / stretches)
+                     : edge_mm * ring_mm,
+            inside > S(0) && jump > 0 ? jump / found.free_per_mm : 1};
   }
 
   Point3<double> point(Index i, Index j, double depth_mm) const {

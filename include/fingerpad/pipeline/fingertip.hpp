@@ -265,8 +265,8 @@ class Fingertip {
 
   /// A vague edge, as that of a first touch is; or what the rim says, which has not seen the
   /// contact: a press beyond two standard deviations where no region is found, or an area on which
-  /// the pressure alone exceeds the press by a quarter. On an object that is rigid and not hollow,
-  /// the membrane's tension only adds to the pressure.
+  /// the pressure alone exceeds the press by a quarter, since the membrane's tension around an
+  /// object only adds to it.
   static bool doubts_contact(const FingertipResult& touch, double pressure_mpa) {
     const ContactResult& contact = touch.contact;
     const bool is_felt = has_sd(touch.wrench);
@@ -276,7 +276,7 @@ class Fingertip {
       return is_felt && press_n > 2 * sd_n;
     }
     return detail::has_vague_edge(contact) ||
-           (is_felt && pressure_mpa * contact.area_mm2 > 1.25 * (press_n + 2 * sd_n));
+           (is_felt && pressure_mpa * contact.pressed_mm2 > 1.25 * (press_n + 2 * sd_n));
   }
 
   FingertipStatus judge(FingertipResult& touch, double pressure_mpa) const {

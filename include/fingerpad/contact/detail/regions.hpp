@@ -175,7 +175,7 @@ S edge_share(const S& offset) {
   if (!(value(offset) < 1)) {
     return S(1);
   }
-  const S sine = sqrt(S(1) - offset * offset);
+  const S sine = sqrt((S(1) - offset) * (S(1) + offset));
   const S angle = acos(offset);
   const S bracket = S(3) / S(2) * offset * sine - angle * (S(1) / S(2) + offset * offset);
   return S(1) + bracket * S(0.63661977236758134308);
