@@ -97,7 +97,7 @@ TEST_CASE("mistakes: printed dots in pictures", "[mistakes][figures]") {
       {"padded rows now", [](Pictures& p) { p.now = with_padding(p.now); }, "lost"},
       {"padded rows in both",
        [](Pictures& p) { p.now = with_padding(p.now), p.free = with_padding(p.free); },
-       "lost"},
+       "beside them"},
       {"negative now", [](Pictures& p) { p.now = 255 - p.now; }, "lost"},
       {"constant now", [](Pictures& p) { p.now.setTo(100); }, "lost"},
       {"black now", [](Pictures& p) { p.now.setTo(0); }, "lost"},

@@ -172,31 +172,46 @@ class DotFinder {
     if (!ok() || frame.size() != size_ || !detail::is_picture(frame)) {
       return {};
     }
-    return label(spots_->find(frame), dots_px);
+    std::vector<Place> poor;
+    std::vector<Place> spots = spots_->find(frame, &poor);
+    const auto discs = static_cast<int>(spots.size());
+    spots.insert(spots.end(), poor.begin(), poor.end());
+    return label(detail::SpotMap(std::move(spots)), discs, dots_px);
   }
 
   /// The same from spots in any order that another program has found. Those that are not finite, or
   /// farther out than 1e6 px, are ignored.
   template <dot_grid Dots>
   DotResult label(const std::vector<Point2<double>>& spots, Dots&& dots_px) {
+    std::vector<Place> good;
+    std::copy_if(spots.begin(), spots.end(), std::back_inserter(good),
+                 [](const Place& spot) { return is_plausible(spot); });
+    const detail::SpotMap map(std::move(good));
+    return label(map, map.size(), dots_px);
+  }
+
+ private:
+  /// Damaged dots tell rows and columns like the others, but only the first `discs` spots have a
+  /// center to be returned.
+  template <class Dots>
+  DotResult label(const detail::SpotMap& map, int discs, Dots&& dots_px) {
     DotResult result;
     if (!ok() || fingerpad::rows(dots_px) != rows() || fingerpad::cols(dots_px) != cols()) {
       return result;
     }
-    std::vector<Place> good;
-    std::copy_if(spots.begin(), spots.end(), std::back_inserter(good),
-                 [](const Place& spot) { return is_plausible(spot); });
-    const detail::SpotMap map(good);
-    const auto answer = print_->labels_of(map, seeds_px_, max_off_);
+    auto answer = print_->labels_of(map, seeds_px_, max_off_);
     Places found(rows(), cols(), detail::no_place());
     result.status = answer.score <= 0  ? DotStatus::lost
                     : answer.ambiguous ? DotStatus::ambiguous
                                        : DotStatus::ok;
     if (result.ok()) {
-      const Places all = places_of(answer.labels, map);
-      print_->follow(all, seeds_px_);
+      print_->follow(places_of(answer.labels, map), seeds_px_);
+      for (int& label : answer.labels.cells()) {
+        label = label < discs ? label : -1;
+      }
       constexpr Index beyond = detail::DotPrint::beyond;
-      found = window_of(all, beyond, beyond, rows(), cols(), detail::no_place());
+      found = window_of(places_of(answer.labels, map), beyond, beyond, rows(), cols(),
+                        detail::no_place());
     }
     result.spots = map.size();
     result.expected = print_->count();
@@ -213,7 +228,6 @@ class DotFinder {
     return result;
   }
 
- private:
   struct Attempt {
     detail::SpotLook look;
     detail::Places dots;
@@ -281,7 +295,11 @@ class DotFinder {
                          const DotFinderOptions& options,
                          const detail::SpotLook& look) {
     detail::SpotFinder finder(look, options.where);
-    const std::vector<Point2<double>> spots = finder.find(frame);
+    std::vector<Place> poor;
+    std::vector<Place> spots = finder.find(frame, &poor);
+    if (2 * poor.size() < spots.size()) {  // else the look is not that of the dots
+      spots.insert(spots.end(), poor.begin(), poor.end());
+    }
     Attempt one;
     one.look = look;
     one.dots = detail::lattice_of(spots);

@@ -49,8 +49,11 @@ class SpotFinder {
         edge_px_((std::max)(look.edge_px / coarse_, 0.6)) {}
 
   /// Centers of the spots of a frame, in any order; none if there are more than `max_spots`, which
-  /// are image noise.
-  std::vector<Place> find(const cv::Mat& frame, std::size_t max_spots = 4000) {
+  /// are image noise. Spots that no disc explains, as of damaged dots, are added to `poor` if it is
+  /// given, else left out: they are near where a dot is, no measure of its center.
+  std::vector<Place> find(const cv::Mat& frame,
+                          std::vector<Place>* poor = nullptr,
+                          std::size_t max_spots = 4000) {
     const std::vector<Place> rough = peaks(frame);
     std::vector<Place> found;
     if (rough.size() > max_spots) {
@@ -64,8 +67,11 @@ class SpotFinder {
         const DiscMap disc =
             print < 0 ? DiscMap{{r, 0}, {0, r}} : discs_[static_cast<std::size_t>(print)];
         const DiscFit fit = locator_.find(light, at, disc, edge_px_, {0, 0});
-        if (is_dot(fit) && norm(fit.center - at) < r) {
+        const bool is_spot = is_dark(fit) && norm(fit.center - at) < r;
+        if (is_spot && is_disc(fit)) {
           found.push_back(full(fit.center, coarse_));
+        } else if (is_spot && poor != nullptr) {
+          poor->push_back(full(fit.center, coarse_));
         }
       }
     });
@@ -111,11 +117,13 @@ class SpotFinder {
     return by * (p + Place{0.5, 0.5}) - Place{0.5, 0.5};
   }
 
-  bool is_dot(const DiscFit& fit) const {
+  bool is_dark(const DiscFit& fit) const {
+    return fit.good && fit.contrast >= look_.min_contrast && fit.light > min_light;
+  }
+  bool is_disc(const DiscFit& fit) const {
     constexpr double max_residual = 0.55;  // of the step from background to dot: ellipses are dots
     constexpr double max_slope = 0.15;     // of the light, over a radius: a dot is half covered
-    return fit.good && fit.contrast >= look_.min_contrast &&
-           norm(fit.slope) * look_.radius_px / coarse_ < max_slope && fit.light > min_light &&
+    return norm(fit.slope) * look_.radius_px / coarse_ < max_slope &&
            fit.residual < max_residual * fit.contrast * fit.light;
   }
 
