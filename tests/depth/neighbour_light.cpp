@@ -86,21 +86,23 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
                               const Map<double>& depth,
                               double pitch) {
   const double aspect = light.pixel_aspect;
-  Map<double> change(depth.rows(), depth.cols());
+  Map<double> change(depth.rows(), depth.cols()), known(depth.rows(), depth.cols());
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
-      change(i, j) =
-          slow_psi(depth, i, j, pitch, aspect) - slow_psi(reference, i, j, pitch, aspect);
+      known(i, j) = slow_psi(reference, i, j, pitch, aspect);
+      change(i, j) = slow_psi(depth, i, j, pitch, aspect) - known(i, j);
     }
   }
   Map<double> out(depth.rows(), depth.cols());
   for (Index i = 0; i < depth.rows(); ++i) {
     for (Index j = 0; j < depth.cols(); ++j) {
-      double sum = 0;
+      double sum = 0, seen = 0, all = 0;
       for (Index r = 0; r < depth.rows(); ++r) {
         for (Index c = 0; c < depth.cols(); ++c) {
           const double y = aspect * static_cast<double>(r - i), x = static_cast<double>(c - j);
           if (x * x + y * y <= static_cast<double>(light.radius_px * light.radius_px)) {
+            all += std::isnan(known(r, c)) ? 0 : 1;
+            seen += std::isnan(change(r, c)) ? 0 : 1;
             sum += std::isnan(change(r, c)) ? 0 : change(r, c);
           }
         }
@@ -108,7 +110,7 @@ Map<double> slow_compensation(const NeighbourLight<double>& light,
       const double risen = depth(i, j) - reference(i, j);
       const double m =
           std::isnan(risen) ? 0 : light.m0_mm_per_rad * std::exp(light.n_per_mm * risen);
-      const double l = depth(i, j) - m * sum;
+      const double l = depth(i, j) - m * (seen > 0 ? sum * all / seen : 0);
       out(i, j) = l < 0 ? 0 : l;
     }
   }

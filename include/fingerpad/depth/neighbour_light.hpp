@@ -163,7 +163,9 @@ NeighbourLight<S> sampled(const NeighbourLight<S>& light, int step) {
 /// Removes the effect of neighbouring light from depth maps, computed in the scalar S. Use one
 /// object a thread. A frame takes O(rows cols r) and allocates nothing.
 ///
-/// A pixel that is missing (not finite) in the frame or in the reference adds nothing.
+/// A pixel that is missing (not finite) in the frame but not in the reference is membrane that was
+/// not seen: it counts with the mean change of the disc's other pixels. A pixel that is missing in
+/// the reference is not membrane and adds nothing.
 template <scalar S = float>
 class NeighbourLightCompensation {
  public:
@@ -182,8 +184,11 @@ class NeighbourLightCompensation {
         cols_(as_view(reference_depth_mm).cols()),
         depth_mm_(static_cast<std::size_t>((rows_ + 2) * (cols_ + 2)), not_a_number<S>()),
         psi0_(static_cast<std::size_t>(rows_ * cols_), S(0)),
+        membrane_(psi0_.size(), S(0)),
         change_(rows_, cols_, light),
+        lost_(change_),
         row_(static_cast<std::size_t>(cols_), S(0)),
+        lost_row_(row_),
         sum_(row_) {
     load(as_view(reference_depth_mm));
     reference_mm_ = depth_mm_;
@@ -191,11 +196,17 @@ class NeighbourLightCompensation {
       l = is_finite(l) ? l : not_a_number<S>();
     }
     for (Index i = 0; i < rows_; ++i) {
-      S* psi0 = psi0_.data() + i * cols_;
+      S *psi0 = psi0_.data() + i * cols_, *has_psi = row_.data();
       detail::for_each_cell<S>(
           cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
-            detail::store_cells<S>(psi0 + j, this->template psi_at<V>(i, j));
+            const V psi = this->template psi_at<V>(i, j), one = detail::every_lane<V>(S(1));
+            detail::store_cells<S>(psi0 + j, psi);
+            detail::store_cells<S>(has_psi + j, V(detail::known<V>(psi) ? one : one - one));
           });
+      change_.set(i, has_psi);
+    }
+    for (Index i = 0; i < rows_; ++i) {
+      change_.sum(i, membrane_.data() + i * cols_);
     }
   }
 
@@ -249,11 +260,12 @@ class NeighbourLightCompensation {
       return FrameStatus::refused;
     }
     load(from);
+    is_any_lost_ = false;
     for (Index i = 0; i < rows_; ++i) {
       compare(i);
     }
     for (Index i = 0; i < rows_; ++i) {
-      change_.sum(i, sum_.data());
+      find_sum(i);
       finish(i);
       detail::store_row(sum_.data(), to, i);
     }
@@ -286,17 +298,39 @@ class NeighbourLightCompensation {
     return V(detail::inclination(slope_sq) + (slope_sq - slope_sq));
   }
 
-  /// Sets the row of change_, 0 where psi is missing here or in the reference.
+  /// Sets the row of change_, 0 where psi is missing here or in the reference, and of lost_.
   void compare(Index row) {
     const S* psi0 = psi0_.data() + row * cols_;
-    S* to = row_.data();
+    S *to = row_.data(), *lost = lost_row_.data();
+    bool is_any_lost = false;
     detail::for_each_cell<S>(
-        cols_, [ =, this ]<class V>(Index j) __attribute__((always_inline)) {
-          const V change = this->template psi_at<V>(row, j) - detail::load_cells<V, S>(psi0 + j);
-          const V none = detail::every_lane<V>(S(0));
-          detail::store_cells<S>(to + j, V(detail::known<V>(change) ? change : none));
+        cols_, [ =, this, &is_any_lost ]<class V>(Index j) __attribute__((always_inline)) {
+          const V none = detail::every_lane<V>(S(0)), one = detail::every_lane<V>(S(1));
+          const V before = detail::load_cells<V, S>(psi0 + j);
+          const V change = this->template psi_at<V>(row, j) - before;
+          const auto is_seen = detail::known<V>(change);
+          const V gone = is_seen ? none : V(detail::known<V>(before) ? one : none);
+          detail::store_cells<S>(to + j, V(is_seen ? change : none));
+          detail::store_cells<S>(lost + j, gone);
+          is_any_lost = is_any_lost || detail::any_lane(none < gone);
         });
+    is_any_lost_ = is_any_lost_ || is_any_lost;
     change_.set(row, to);
+    lost_.set(row, lost);
+  }
+
+  /// Sets sum_ to psi_sum of a row in rad.
+  void find_sum(Index row) {
+    change_.sum(row, sum_.data());
+    if (!is_any_lost_) {
+      return;
+    }
+    lost_.sum(row, lost_row_.data());
+    const S* membrane = membrane_.data() + row * cols_;
+    for (std::size_t j = 0; j < sum_.size(); ++j) {
+      const S seen = membrane[j] - lost_row_[j];
+      sum_[j] = S(0) < seen ? sum_[j] * (membrane[j] / seen) : sum_[j];
+    }
   }
 
   /// Judged from every eighth pixel of every eighth row.
@@ -319,8 +353,10 @@ class NeighbourLightCompensation {
   Index rows_, cols_;
   std::vector<S> depth_mm_, reference_mm_;  // with a border of one cell, which is missing
   detail::SharedVector<S> psi0_;            // of the reference; NaN where missing
-  detail::DiscSums<S> change_;              // of psi in rad
-  std::vector<S> row_, sum_;
+  detail::SharedVector<S> membrane_;        // pixels of each disc that have psi0
+  detail::DiscSums<S> change_, lost_;       // of psi in rad; of pixels
+  std::vector<S> row_, lost_row_, sum_;
+  bool is_any_lost_ = false;
 };
 
 }  // namespace v1
