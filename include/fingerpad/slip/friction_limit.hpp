@@ -168,7 +168,7 @@ struct FrictionLimitOptions {
   double min_normal_n = 0.05;  ///< N, > 0: L is unknown with a smaller normal force
   /// Whether the object is soft, as foam or skin: its surface shears before it slips, so dots that
   /// fall behind need not slip. Anything from the ratio of the dots to 1 may then stick: the middle
-  /// is told, and is in doubt below 0.7.
+  /// is told, and is in doubt below 0.7. The place of such an object is doubted by a `Fingertip`.
   bool soft_object = false;
 };
 /// Says which option has no meaning; "" if all have one.

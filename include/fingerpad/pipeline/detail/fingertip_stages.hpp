@@ -172,6 +172,7 @@ struct FingertipDots {
   OwnedGrid<std::uint8_t> held;  // those that touch wherever the edge may lie
   double radius_px;              // of the samples
   double depth_noise_mm;
+  bool is_rigid;         // the object: the dots follow the surface of a soft one, not its body
   bool follows = false;  // an object
   ContactShift<> shift;
   ObjectMotion<> motion;
@@ -185,6 +186,7 @@ struct FingertipDots {
         held(touching),
         radius_px(o.dot_radius_px / o.sampling),
         depth_noise_mm(o.dot_depth_noise_mm),
+        is_rigid(!o.friction.soft_object),
         shift(o.free_dots_mm),
         motion(seen.rows, seen.cols),
         stick(seen.rows, seen.cols, o.stick),
@@ -251,7 +253,7 @@ struct FingertipDots {
     pose.position_sd_mm = std::hypot(pose.position_sd_mm, touch.depth_light_sd_mm);
     // one that mostly sticks has not slid as a whole, whatever its ratio
     const bool may_have_slid = touch.slip.in_doubt && touch.slip.stick_ratio < 0.8;
-    const bool is_place_known = 2 * pose.position_sd_mm < most_place_mm;
+    const bool is_place_known = is_rigid && 2 * pose.position_sd_mm < most_place_mm;
     touch.rotation_in_doubt =
         !pose.ok() || !(2 * pose.rotation_sd_rad < most_rotation_rad) || may_have_slid;
     const bool is_doubted = pose.ok() && (touch.rotation_in_doubt || !is_place_known);
