@@ -265,6 +265,34 @@ TEST_CASE("dots: what hides a part of the frame hides only dots there") {
   CHECK(test::errors_of(found, truth).worst_px < 0.1);  // half-hidden dots
 }
 
+TEST_CASE("dots: damaged dots tell rows and columns, but have no center") {
+  Print print;
+  const DotPlaces truth = test::places_of(print);
+  DotFinder finder(test::picture_of(print, truth));
+  REQUIRE(finder.ok());
+  const DotPlaces now = test::moved(truth, {GENERATE(0.0, 0.8) * print.pitch_px, 0});
+  cv::Mat frame = test::picture_of(print, now);
+  struct Damage {
+    cv::Rect where;  // from the middle of a dot
+    int grey;
+  };
+  const Damage scratch = {{-1, -8, 3, 16}, 120}, dirt = {{0, -8, 8, 16}, 60};
+  const Damage damage = GENERATE_COPY(scratch, dirt);
+  const int last = print.cols - 1;
+  for (int i = 0; i < print.rows; ++i) {
+    const cv::Point at(cvRound(now(i, last)[0]), cvRound(now(i, last)[1]));
+    frame(damage.where + at) = cv::Scalar::all(damage.grey);
+  }
+  DotPlaces found(print.rows, print.cols);
+  const DotResult result = finder(frame, found);
+  REQUIRE(result.ok());
+  CHECK(result.found == print.rows * last);
+  for (int i = 0; i < print.rows; ++i) {
+    CHECK_FALSE(is_present(found(i, last)));
+  }
+  CHECK(test::errors_of(found, now).worst_px < 0.1);
+}
+
 TEST_CASE("dots: the order of the spots does not matter") {
   Print print;
   const DotPlaces truth = test::places_of(print);

@@ -218,7 +218,7 @@ TEST_CASE("dot follower: a covered, dirty or reflecting dot is lost and comes ba
   const auto clean = print.picture();
   const Point dirty = centers_of(print)(4, 5);
   const double stain = GENERATE(20.0, 250.0);
-  const double right = GENERATE(0.0, 3.0, -4.0);
+  const double right = GENERATE(0.0, 3.0, -4.0, 6.0, -7.0);  // over it, over half of it, beside it
   const Point beside = {right, right / 2};
   auto stained = clean;
   for (Index i = 0; i < side; ++i) {
