@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // Calibrations: time of a fit ("ns/pixel" is per fit).
-// "a sensor of numbers": the calibrations of a simulated sensor
-// (bench/trials/calibrations/trials.cpp), from one measurement. Error: of each
-// parameter, relative to the true one, over 100 fits with fresh noise.
 // "... on scenes": curves and maps from contacts of finite-element membranes
 // (tests/data/contacts.csv). Error: of the method, on a scene that the fit does not use. Published
 // rows: a quadratic with a constant, from the press alone; the central dot, straight lines and the
@@ -21,7 +18,6 @@
 
 #include "bench/support/run.hpp"
 #include "bench/support/scene.hpp"
-#include "bench/trials/calibrations/trials.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/depth/depth.hpp"
 #include "fingerpad/depth/fit_reference.hpp"
@@ -40,29 +36,6 @@ using Samples = std::vector<ForceSample<double>>;
 
 std::span<const ForceSample<double>> span_of(const Samples& samples) {
   return samples;
-}
-
-void add_trial(const std::string& name) {
-  const bench::Memory memory;
-  const auto trial = std::make_shared<trials::Trial>(trials::trial_of(name));
-  bench::add(
-      "a sensor of numbers/" + name, 1, memory.bytes(),
-      [=] { benchmark::DoNotOptimize(trial->again()); },
-      [=](auto& counters) {
-        trials::Chance fresh(2);
-        std::vector<double> errors;
-        for (int k = 0; k < 100; ++k) {
-          const auto found = trial->anew(fresh);
-          for (std::size_t p = 0; p < found.size(); ++p) {
-            if (is_finite(trial->truth[p]) && trial->truth[p] != 0) {
-              errors.push_back(found[p] / trial->truth[p] - 1);
-            }
-          }
-        }
-        if (!errors.empty()) {
-          bench::note_errors(counters, "parameters", "share", errors);
-        }
-      });
 }
 
 /// An estimator without smoothing from what a fit returns.
@@ -206,9 +179,6 @@ void add_moment(const std::string& name,
 
 int main(int argc, char** argv) {
   (void)test::contact_records({});  // read the file now: its memory does not belong to a fit
-  for (const std::string& name : trials::trial_names()) {
-    add_trial(name);
-  }
   add_references();
   const Pairs plates = {{{"drag", "twist", "mix"}, "press"},
                         {{"press", "twist", "mix"}, "drag"},

@@ -48,9 +48,8 @@ METHODS = {
 NOTES = {
     "spatial_stick_ratio": """"On scenes": ten finite-element scenes, six times each; the limit is that of
 dragged plates, as a share of the coefficient of friction.""",
-    "calibrations": """Times are those of a fit. "A sensor of numbers": errors of each parameter over 100 fits
-with fresh noise ([what each is](calibrate/calibration.md#the-covariance-tried)). "On scenes": errors of the
-method, on finite-element scenes that were left out of the fit.""",
+    "calibrations": """Times are those of a fit. "On scenes": errors of the method, on finite-element scenes that were
+left out of the fit.""",
 }
 # The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
