@@ -5,7 +5,7 @@
 // history of 1000. In "vibrating" rows one taxel of each finger vibrates, in "quiet" rows none.
 // Errors, over twelve recordings with 0.08 to 0.32 waves a sample: of the vibrating taxel's rms,
 // against two passes in long double; of its waves, which are integers, against the true waves of a
-// window; of the centroid, against sums in double. "two passes": the direct method in double.
+// window; of the centroid, against sums in double.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -195,32 +195,6 @@ void add(const std::string& name, bool vibrates, Index window, bool with_rule) {
       });
 }
 
-/// Largest rms of each finger, from the whole window in each sample.
-void add_two_passes(const std::string& group, Index window) {
-  const auto readings =
-      std::make_shared<const std::vector<std::uint16_t>>(recording<std::uint16_t>(timed_turn_rad));
-  bench::add(
-      group + "two passes over all windows", static_cast<std::size_t>(3 * rows * cols), 0,
-      [readings, window, n = Index(0)]() mutable {
-        n = n + 1 < period ? n + 1 : 0;
-        for (int finger = 0; finger < 3; ++finger) {
-          double most = 0;
-          for (Index k = 0; k < rows * cols; ++k) {
-            most = std::max(most, rms_of<double>(window_of(*readings, k, n, window)));
-          }
-          benchmark::DoNotOptimize(most);
-        }
-      },
-      [readings, window](auto& counters) {
-        std::vector<double> errors;
-        for (Index u = 0; u < period; ++u) {
-          const auto of = window_of(*readings, vibrating_taxel, u, window);
-          errors.push_back(rms_error(rms_of<double>(of), of));
-        }
-        bench::note_errors(counters, "rms", "share", errors);
-      });
-}
-
 /// Mean and standard deviation of the windows of all taxels.
 void add_opencv(const std::string& group, Index window) {
   const auto length = static_cast<int>(window);
@@ -251,7 +225,6 @@ int main(int argc, char** argv) {
   add<Counts, double>(group + "double, the default", true, 16, false);
   add<Counts, float>(group + "float", true, 16, false);
   add<Counts, double>(group + "hand", true, 16, true);
-  add_two_passes(group, 16);
   add_opencv(group, 16);
   return bench::run(argc, argv);
 }

@@ -87,11 +87,6 @@ ForceCurve<S> with_errors(ForceCurve<S> curve) {
   return curve;
 }
 
-template <class S>
-ForceCurve<S> rising() {
-  return {{S(0), S(0.02), S(1e-5), S(1e-7)}, S(0), S(largest_mm2)};
-}
-
 /// The quadratic of eq. 18.
 template <class S>
 void add_opencv(const std::string& group) {
@@ -130,8 +125,6 @@ void add_all(const std::string& type) {
               []<class T>(T) { return published::normal_force_by_area<T>(); });
   add_each<S>(single + "/published::NormalForce by depth, published", largest_depth_mm,
               []<class T>(T) { return published::normal_force_by_depth<T>(); });
-  add_plain<S>(type, "NormalForce of degree 3",
-               []<class T>(T) { return NormalForce(rising<T>()); });
   add_each<S>(single + "/power law, published", largest_radius_mm, [](auto) {
     return []<class T>(const T& radius_mm, const Point2<T>&, const T&) {
       return radius_mm > T(0) ? published::force_of_radius_n(radius_mm, T(6), T(1) / T(3)) : T(0);
@@ -139,13 +132,6 @@ void add_all(const std::string& type) {
   });
   add_each<S>(single + "/NormalForce, variance", largest_mm2, []<class T>(T) {
     return number_of(NormalForce(with_errors(test::curve_of_area<T>())));
-  });
-  add_each<S>(single + "/fused, by area and by depth", largest_mm2, []<class T>(T) {
-    const NormalForce by_area(with_errors(test::curve_of_area<T>()));
-    const NormalForce by_depth(with_errors(test::curve_of_depth<T>()));
-    return [=](const T& area, const Point2<T>&, const T&) {
-      return fused(by_area(area), by_depth(area / T(80))).force_n;
-    };
   });
   bench::add_streaming(single, static_cast<std::size_t>(bench::Contacts<S>::frames));
   add_opencv<S>(single);

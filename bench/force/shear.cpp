@@ -3,8 +3,7 @@
 // Tangential force and moment by look-up, of 4096 contacts ("ns/pixel" is per contact). "as
 // printed": eqs. 4 and 5 by std::pow, one line each, without checks of contact or bad input.
 // Errors: of each contact's moment and of the force along x, against long double, relative to the
-// largest. "with normal force": additionally the normal force by area and by depth, fused by their
-// variances.
+// largest.
 
 #include <algorithm>
 #include <cmath>
@@ -117,26 +116,6 @@ void add_all() {
       "straight lines, the default",
       [=](const S& measure, const Point2<S>& d, const S& theta, const auto& to, Index k) {
         fill(shear(measure, d, theta), to, k);
-      },
-      truth);
-  if (std::is_same_v<S, float>) {
-    return;
-  }
-  const auto with_errors = [](ForceCurve<S> curve) {
-    curve.covariance[0][0] = S(1e-4);
-    curve.covariance[1][1] = S(1e-6);
-    curve.covariance[2][2] = S(1e-9);
-    curve.residual_sd_n = S(0.1);
-    return curve;
-  };
-  const NormalForce force_by_area(with_errors(test::curve_of_area<S>()));
-  const NormalForce force_by_depth(with_errors(test::curve_of_depth<S>()));
-  add_each<S>(
-      "with normal force",
-      [=](const S& area, const Point2<S>& d, const S& theta, const auto& to, Index k) {
-        const S depth_mm = area / S(80);
-        benchmark::DoNotOptimize(fused(force_by_area(area), force_by_depth(depth_mm)).force_n);
-        fill(shear(area, d, theta), to, k);
       },
       truth);
 }

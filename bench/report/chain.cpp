@@ -18,7 +18,6 @@
 #include <string>
 #include <vector>
 
-#include "chain/event_counter.hpp"
 #include "chain/pressed_frames.hpp"
 #include "support/allocations.hpp"
 
@@ -269,22 +268,6 @@ ordered_json passes_of(const FingertipOptions& options, const chain::PressedFram
            })}};
 }
 
-/// Instructions and cycles of a frame; null where the machine does not count them.
-ordered_json events_of(Fingertip chain, const chain::PressedFrames& frames) {
-  const auto a_frame = [&](chain::EventCounter& counter) -> ordered_json {
-    constexpr int count = 64;
-    const auto before = counter.value();
-    for (int k = 0; k < count; ++k) {
-      (void)touch_of(chain, frames[static_cast<std::size_t>(k) % frames.size()].view());
-    }
-    const auto after = counter.value();
-    return before && after ? ordered_json((*after - *before) / count) : ordered_json();
-  };
-  chain::EventCounter instructions(chain::EventCounter::Event::instructions);
-  chain::EventCounter cycles(chain::EventCounter::Event::cycles);
-  return {{"instructions", a_frame(instructions)}, {"cycles", a_frame(cycles)}};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -301,7 +284,6 @@ int main(int argc, char** argv) {
     of.update(stages_of(of_chain, frames, 400));
     of["copy"] = copy_of(of_chain, frames);
     of["errors"] = errors_of(made, frames);
-    of["events"] = events_of(made, frames);
   };
   add("lean", lean);
   add("default", options);

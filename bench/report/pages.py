@@ -22,7 +22,6 @@ from tables import number, print_group, size
 METHODS = {
     "depth": "Depth: inversion",
     "frame": "Depth: the whole step",
-    "smoothing": "Depth: averaging",
     "neighbour_light": "Neighbour light",
     "optics": "Optics",
     "curvature": "Curvature",
@@ -43,13 +42,6 @@ METHODS = {
     "dot_finder": "Printed dots",
     "foam_contact": "Foam contact",
     "calibrations": "Calibrations",
-}
-# {program: what its tables do not say themselves}
-NOTES = {
-    "spatial_stick_ratio": """"On scenes": ten finite-element scenes, six times each; the limit is that of
-dragged plates, as a share of the coefficient of friction.""",
-    "calibrations": """Times are those of a fit. "On scenes": errors of the method, on finite-element scenes that were
-left out of the fit.""",
 }
 # The published method against the default: (label, program, group, published row, our row).
 COMPARED = [
@@ -92,8 +84,6 @@ def write_methods(build, docs, about):
     body = io.StringIO()
     for program, title in METHODS.items():
         body.write(f"\n## {title}\n")
-        if program in NOTES:
-            body.write(f"\n{NOTES[program]}\n")
         for group, rows in runs[program].items():
             print_group(group, rows, body)
     overview = [(label, runs[program][group][published], runs[program][group][ours])
@@ -165,8 +155,7 @@ def write_chain(build, docs, about):
                        ("chain_latencies", chain_latencies(runs)),
                        ("chain_errors", chain_errors(chains)), ("chain_samples", chain_samples(runs))):
         replace_table(docs / "results.md", name, text)
-    for name in ("worst_case", "instructions"):
-        replace_table(docs / "results.md", name, (build / f"{name}.md").read_text("utf-8"))
+    replace_table(docs / "results.md", "worst_case", (build / "worst_case.md").read_text("utf-8"))
 
 
 def replace_table(page, name, table):
