@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Printed dots and contact flags as the fuzzer's bytes have them.
-#include <cstdint>
-
+// Printed dots as the fuzzer's bytes have them.
 #include "fingerpad/core/point.hpp"
 #include "fuzz/input.hpp"
 
@@ -54,13 +52,6 @@ Grid<Point> moved_dots(Input& in, const Grid<Point>& from) {
     dot.y = static_cast<Number>(in.number(-30, 30));
   }
   return dots;
-}
-
-inline Grid<std::uint8_t> any_contact(Input& in, Index rows, Index cols) {
-  Grid<std::uint8_t> contact(rows, cols);
-  const bool all = in.flag();
-  contact.fill(in, [&] { return static_cast<std::uint8_t>(all ? 1 : in.byte() & 1); });
-  return contact;
 }
 
 }  // namespace fuzz
