@@ -292,48 +292,9 @@ TEST_CASE("a free pad has no contact", "[contact_region]") {
 
 namespace {
 
-template <class CameraType, class Scalar>
-struct Way {
-  using camera = CameraType;
-  using number = Scalar;
-};
 using Plan = OrthographicCamera<double>;
-using Through = Camera<double>;
-
-Plan small_camera(const Plan&) {
-  return height_map(60, 64, 0.32);
-}
-Through small_camera(const Through&) {
-  return pad_camera(60, 64, 0.32);
-}
-
-template <class Way>
-void check_edge(const ContactTest& test) {
-  const auto camera = small_camera(typename Way::camera{});
-  const auto depth = depths_of<typename Way::number>(camera, RoundFilm({}), 60, 64);
-  const auto r = find(camera, depth, test).result;
-  CHECK(r.regions == 1);
-  // the edge is the end of a contact of 6 mm; a placed edge adds the area within its gap
-  const RoundFilm film({});
-  const double nearer_mm =
-      test.places_edge ? std::sqrt(test.touching_gap_mm / film.free_per_mm) : 0;
-  INFO("radius " << radius_of(r) << " for " << 6 + nearer_mm);
-  CHECK(radius_of(r) == Approx(6 + nearer_mm).margin(0.27));  // a pixel is 0.32 mm
-  CHECK(r.center_mm.x == Approx(0).margin(0.1));
-  CHECK(r.center_mm.y == Approx(0).margin(0.1));
-  CHECK(r.depth_mm == Approx(3).margin(0.05));
-}
 
 }  // namespace
-
-TEMPLATE_TEST_CASE("every camera, scalar and edge finds the contact",
-                   "[contact_region]",
-                   (Way<Through, float>),
-                   (Way<Plan, float>),
-                   (Way<Through, double>)) {
-  check_edge<TestType>(at_threshold(with_ring(5)));
-  check_edge<TestType>(with_ring(5));
-}
 
 TEST_CASE("pixels need not be square", "[contact_region]") {
   const auto check = [](auto camera) {
@@ -487,19 +448,6 @@ TEST_CASE("missing depth is never contact and reaches no farther than its ring",
     CHECK(edge.result.area_mm2 == Approx(edge_before.result.area_mm2).epsilon(0.03));
     CHECK(edge.result.depth_mm == Approx(edge_before.result.depth_mm).margin(1e-3));
   }
-}
-
-TEST_CASE("missing neighbours count as just as deep", "[contact_region]") {
-  // a contact pixel beside depths of 1e38 mm, seen by a camera whose rays would scale with them
-  const auto camera = pad_camera(60, 64, 0.32);
-  auto depth = depths_of<float>(camera, RoundFilm({}), 60, 64);
-  const double area = find(camera, depth, with_ring(5)).result.area_mm2;
-  for (Index j = 20; j < 50; j += 7) {
-    depth(30, j) = 3e38F;
-  }
-  const ContactResult r = find(camera, depth, with_ring(5)).result;
-  CHECK(r.area_mm2 == Approx(area).epsilon(0.05));
-  CHECK(is_finite(r.depth_mm));
 }
 
 TEST_CASE("pixels at the image's end count as much as others", "[contact_region]") {
@@ -775,27 +723,6 @@ TEST_CASE("only shape counts, not depth, seen from infinitely far", "[contact_re
   });
 }
 
-TEST_CASE("the larger the contact, the larger the area", "[contact_region]") {
-  rc::prop("of every edge", [] {
-    test::RoundContact contact;
-    contact.radius_mm = test::uniform(2, 4);
-    contact.free_per_mm = test::uniform(0.04, 0.08);
-    const auto camera = test::height_map(44, 44, pitch_mm);
-    const auto area = [&](bool places_edge) {
-      const auto depth = test::depths_of<double>(camera, RoundFilm(contact), 44, 44);
-      ContactTest test;
-      test.ring_px = 4;
-      test.min_region_px = 1;
-      test.places_edge = places_edge;
-      return find_in(depth, test).result.area_mm2;
-    };
-    const double before[] = {area(false), area(true)};
-    contact.radius_mm += test::uniform(0.1, 1);
-    RC_ASSERT(area(false) >= before[0]);
-    RC_ASSERT(area(true) >= before[1]);
-  });
-}
-
 TEST_CASE("cleaning keeps the regions that it says", "[contact_region]") {
   rc::prop("against OpenCV's components", [] {
     const auto depth = any_membrane();
@@ -993,25 +920,6 @@ TEMPLATE_TEST_CASE(
   CHECK(edge_share(S(1)) == S(1));
   CHECK(edge_share(S(40)) == S(1));
   CHECK(edge_share(not_a_number<S>()) == S(1));
-}
-
-TEST_CASE("the share rises with the offset", "[contact_region]") {
-  rc::prop("monotone", [] {
-    const double a = test::uniform(0, 1.1), b = a + test::log_uniform(1e-6, 1);
-    RC_ASSERT(edge_share(a) <= edge_share(b) + 1e-15);
-  });
-}
-
-TEST_CASE("the share's derivative by dual numbers", "[contact_region]") {
-  const auto share = [](const auto& offset) { return edge_share(offset); };
-  rc::prop("against differences", [&] {
-    const Digits50 offset(test::uniform(0.01, 0.99));
-    const Digits50 exact = test::slope_by_tangent(share, offset);
-    const Digits50 nearly = test::slope_by_difference(share, offset, Digits50("1e-16"));
-    RC_ASSERT(test::relative_error(nearly, exact) < Digits50("1e-25"));
-  });
-  // on the edge: 4 / pi, the factor of calibration from noise of curvature to noise of the edge
-  CHECK(test::slope_by_tangent(share, 0.0) == Approx(4 / pi.convert_to<double>()).epsilon(1e-14));
 }
 
 TEST_CASE("a round edge curves away from the ring", "[contact_region]") {

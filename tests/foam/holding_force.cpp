@@ -237,28 +237,6 @@ auto end_of(const Search& search, double begins_below_n, double slips_below_n) {
   return state.command();
 }
 
-template <class Search>
-void check_copies(const Search& search, const News& signal) {
-  auto state = search;
-  const auto at = static_cast<std::size_t>(test::whole(0, static_cast<Index>(signal.size()) - 1));
-  for (std::size_t k = 0; k < at; ++k) {
-    (void)state(signal[k]);
-  }
-  auto copy = state;
-  News rest(signal.begin() + static_cast<std::ptrdiff_t>(at), signal.end());
-  for (const PreslipStatus one : rest) {
-    const auto command = state(one);
-    RC_ASSERT(equal(command, copy(one)));
-    RC_ASSERT(equal(command, state.command()));
-  }
-  RC_ASSERT(equal(after(search, signal), state.command()));
-  // and missing answers change nothing
-  News heard;
-  std::copy_if(signal.begin(), signal.end(), std::back_inserter(heard),
-               [](PreslipStatus one) { return one != PreslipStatus::cannot_tell; });
-  RC_ASSERT(equal(after(search, heard), state.command()));
-}
-
 }  // namespace
 
 TEST_CASE("loosening whatever is told", "[holding_force][law]") {
@@ -316,26 +294,6 @@ TEST_CASE("loosening whatever is told", "[holding_force][law]") {
     RC_ASSERT(equal(after(search, signal), search.command()));
     signal.push_back(PreslipStatus::preslip);
     RC_ASSERT(after(search, signal).phase == SearchPhase::found);
-  });
-  rc::prop("copies and repetitions give the same commands",
-           [] { check_copies(LoosenUntilPreslip<double>(any_loosen_plan()), any_news(100)); });
-  rc::prop("pre-slip that comes earlier finds a larger force", [] {
-    auto plan = any_loosen_plan();
-    plan.until_slipped = false;
-    const LoosenUntilPreslip<double> search(plan);
-    const Index samples = 30 * (plan.settle_samples + plan.watch_samples);
-    const Index early = test::whole(0, samples - 1), late = test::whole(early, samples - 1);
-    const auto from = [&](Index first) {
-      News signal(static_cast<std::size_t>(samples + 20), PreslipStatus::preslip);
-      std::fill(signal.begin(), signal.begin() + first, PreslipStatus::steady);
-      return after(search, signal);
-    };
-    const auto a = from(early), b = from(late);
-    RC_ASSERT(is_end(a.phase));
-    RC_ASSERT(is_end(b.phase));
-    RC_ASSERT((a.force_n >= b.force_n || b.phase == SearchPhase::at_limit));
-    RC_ASSERT(a.steps <= b.steps);
-    RC_ASSERT((a.phase == SearchPhase::found || b.phase == SearchPhase::at_limit));
   });
 }
 
@@ -454,8 +412,6 @@ TEST_CASE("lifting whatever is told", "[holding_force][law]") {
     signal.push_back(PreslipStatus::preslip);
     RC_ASSERT(after(search, signal).steps == 2);
   });
-  rc::prop("copies and repetitions give the same commands",
-           [] { check_copies(LiftWithRegrip<double>(any_lift_plan()), any_news(100)); });
 }
 
 TEST_CASE("lifting an object that is known", "[holding_force][law]") {

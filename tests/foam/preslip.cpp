@@ -326,19 +326,6 @@ TEST_CASE("a finger that cannot be judged makes no pair", "[preslip]") {
   CHECK_FALSE(pair(PreslipRule::grasp_lift, older, restless));
 }
 
-TEST_CASE("finger sample: when it is pressed, and when it vibrates", "[preslip]") {
-  const Sample empty;
-  CHECK_FALSE(empty.is_pressed());
-  CHECK_FALSE(empty.is_vibrating());
-  CHECK(empty.status == TaxelStatus::filling);
-  CHECK(felt(0, 1).is_vibrating());
-  CHECK_FALSE(felt(0, 0).is_vibrating());
-  CHECK_FALSE(felt(nowhere, 1).is_vibrating());
-  CHECK(felt(0, 1, 0, 0).is_pressed());
-  CHECK_FALSE(felt(0, 1, none, 0).is_pressed());
-  CHECK_FALSE(felt(0, 1, 0, infinity).is_pressed());
-}
-
 namespace {
 
 template <std::size_t Fingers>
@@ -490,12 +477,6 @@ void check_searches() {
   }
 }
 
-/// Whether b alarms wherever a does.
-bool alarms_wherever(const Results& a, const Results& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](bool one, bool more) { return !one || more; });
-}
-
 template <std::size_t Fingers, class Change>
 History<Fingers> changed(History<Fingers> history, const Change& change) {
   for (auto& hand : history) {
@@ -515,25 +496,6 @@ TEST_CASE("pre-slip: the newest sample finds what the stack as printed does", "[
 }
 
 TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
-  rc::prop("the names of the locations", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    const Index factor = test::whole(1, 1000), offset = test::whole(0, 1000);
-    const auto renamed = changed(history, [&](auto& s, std::size_t f) {
-      const auto rename = [&](Index& location) {
-        location = location < 0
-                       ? location
-                       : (f == 0 ? 2000000 - factor * location : factor * location + offset);
-      };
-      rename(s.location);
-      for (auto& one : s.vibrations) {
-        rename(one.location);
-      }
-    });
-    for (const PreslipRule rule : all_rules) {
-      RC_ASSERT(run(rule, history, options) == run(rule, renamed, options));
-    }
-  });
   rc::prop("the order of the fingers", [] {
     const auto history = any_history<3>();
     const Options options = any_options();
@@ -586,62 +548,6 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
       RC_ASSERT(run(rule, history, options) == run(rule, scaled, scaled_options));
     }
   });
-  rc::prop("how long a wave is", [] {
-    const auto history = any_history<2>();
-    Options options = any_options();
-    options.min_waves = 1;
-    const Index factor = test::whole(1, 16);
-    const auto faster = changed(history, [&](auto& s, std::size_t) {
-      s.waves = factor * s.waves;
-      for (auto& one : s.vibrations) {
-        one.waves *= factor;
-      }
-    });
-    for (const PreslipRule rule : all_rules) {
-      RC_ASSERT(run(rule, history, options) == run(rule, faster, options));
-    }
-  });
-}
-
-TEST_CASE("pre-slip: what can only add an alarm", "[preslip][law]") {
-  rc::prop("a longer history", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    Options longer = options;
-    longer.history += test::whole(1, 10);
-    for (const PreslipRule rule : all_rules) {
-      RC_ASSERT(alarms_wherever(run(rule, history, options), run(rule, history, longer)));
-    }
-  });
-  rc::prop("fewer waves asked for", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    Options fewer = options;
-    fewer.min_waves = test::whole(0, options.min_waves);
-    for (const PreslipRule rule : all_rules) {
-      RC_ASSERT(alarms_wherever(run(rule, history, options), run(rule, history, fewer)));
-    }
-  });
-  rc::prop("a smaller tolerance", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    Options smaller = options;
-    smaller.centroid_tolerance_mm *= test::uniform(0, 1);
-    RC_ASSERT(alarms_wherever(run(PreslipRule::grasp_lift, history, options),
-                              run(PreslipRule::grasp_lift, history, smaller)));
-  });
-  rc::prop("another finger of a lift; never one of grasp-optimise", [] {
-    const auto history = any_history<3>();
-    const Options options = any_options();
-    History<2> two;
-    for (const auto& hand : history) {
-      two.push_back({hand[0], hand[1]});
-    }
-    const PreslipRule lift = PreslipRule::grasp_lift;
-    const PreslipRule optimise = PreslipRule::printed_grasp_optimise;
-    RC_ASSERT(alarms_wherever(run(lift, two, options), run(lift, history, options)));
-    RC_ASSERT(alarms_wherever(run(optimise, history, options), run(optimise, two, options)));
-  });
 }
 
 namespace {
@@ -663,23 +569,6 @@ FingerSample<S> felt(Index location, Index waves, double x_mm = 0, double y_mm =
 }
 
 }  // namespace
-
-TEST_CASE("pre-slip: centroids at the ends of their range", "[preslip]") {
-  const auto lift = [](double a_mm, double b_mm, double tolerance_mm) {
-    const Options options{.centroid_tolerance_mm = tolerance_mm};
-    return holds(PreslipRule::grasp_lift, Hand<1>{felt(1, 1, a_mm, 0)},
-                 Hand<1>{felt(2, 2, b_mm, 0)}, options);
-  };
-  CHECK(lift(largest, -largest, 1));        // their difference is infinite
-  CHECK(lift(-largest, largest, largest));  // and beyond any tolerance
-  CHECK_FALSE(lift(largest, largest, 0));
-  CHECK(lift(5e-324, 0, 0));
-  CHECK_FALSE(lift(5e-324, 0, 5e-324));
-  CHECK_FALSE(lift(infinity, 0, 1));  // not a centroid
-  CHECK_FALSE(lift(0, -infinity, 1));
-  CHECK_FALSE(lift(infinity, -infinity, 1));
-  CHECK_FALSE(lift(none, 0, 0));
-}
 
 TEST_CASE("pre-slip: the newest sample is compared with all others at the ends of the range",
           "[preslip]") {
@@ -753,13 +642,6 @@ TEMPLATE_TEST_CASE("pre-slip: the same answers in any number",
   };
   check(PreslipRule::printed_grasp_optimise);
   check(PreslipRule::grasp_lift);
-}
-
-TEST_CASE("pre-slip: a derivative that is not a number changes nothing", "[preslip]") {
-  using S = test::Tangent<double>;
-  auto older = felt<S>(1, 1, 0, 0), later = felt<S>(2, 2, 1, 0);
-  later.center_x_mm.d = none;
-  CHECK(holds(PreslipRule::grasp_lift, Hand<1, S>{older}, Hand<1, S>{later}));
 }
 
 TEST_CASE("searches for the holding force: nothing is allocated", "[holding_force]") {

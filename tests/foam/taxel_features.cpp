@@ -795,34 +795,6 @@ TEST_CASE("taxel features: whatever is read, what is said is in range", "[taxel_
   });
 }
 
-TEST_CASE("taxel features: what is held still stays", "[taxel_features]") {
-  rc::prop("sum and centroid of a steady hold are those of its first sample", [] {
-    auto o = any_options();
-    o.stuck_after = test::whole(2, 8);
-    const auto flickering = test::whole(0, 16);  // of 16 taxels
-    std::vector<double> load;
-    for (int k = 0; k < 16; ++k) {
-      load.push_back(static_cast<double>(test::whole(1, 1000)));
-    }
-    load[0] = 1000;  // more than twice 2.5 times any noise
-    TaxelFeatures<> finger(4, 4, o);
-    FingerSample<> first, last;
-    for (int n = 0; n < 41; ++n) {
-      Array array(4, 4);
-      for (std::ptrdiff_t k = 0; k < 16; ++k) {
-        array.cells[static_cast<std::size_t>(k)] =
-            load[static_cast<std::size_t>(k)] + (k < flickering ? n % 2 : 0);
-      }
-      last = finger(array, n * o.sample_period_s);
-      first = n == 0 ? last : first;
-    }
-    RC_ASSERT(last.left_out == 0);
-    RC_ASSERT(last.sum == Approx(first.sum));
-    RC_ASSERT(last.center_x_mm == Approx(first.center_x_mm));
-    RC_ASSERT(last.center_y_mm == Approx(first.center_y_mm));
-  });
-}
-
 namespace {
 
 /// Deviation of taxel 0 of two, without a line, by two passes in double over the last window.
@@ -881,53 +853,6 @@ TEMPLATE_TEST_CASE("taxel features: a small vibration on a large load that wande
   }
   INFO("worst relative error " << worst << ", window " << window);
   CHECK(worst < (std::is_same_v<S, float> ? 2e-6 : 1e-14));
-}
-
-TEMPLATE_TEST_CASE("taxel features: a huge reading is forgotten with its window",
-                   "[taxel_features]",
-                   float,
-                   double) {
-  using S = TestType;
-  auto o = options(16);
-  o.noise = 1;
-  TaxelFeatures<S> finger(4, 4, o);
-  Index false_alarms_late = 0;
-  for (int k = 0; k < 200; ++k) {
-    Image<S> taxels(4, 4, S(100));
-    taxels(1, 1) = k == 50 ? S(9e8) : S(100);
-    const auto sample = finger(taxels, k);
-    if (k >= 50 && k < 66) {
-      CHECK(sample.location == 5);
-    }
-    false_alarms_late += k >= 50 + 16 && sample.is_vibrating() ? 1 : 0;
-  }
-  CHECK(false_alarms_late == 0);
-}
-
-TEMPLATE_TEST_CASE("taxel features: readings at the ends of what a number holds",
-                   "[taxel_features]",
-                   float,
-                   double) {
-  using S = TestType;
-  using Limits = std::numeric_limits<S>;
-  const TaxelFeatures<S> features(2, 2, options(8));
-  for (const S extreme : {Limits::max(), Limits::lowest(), Limits::denorm_min(), Limits::min()}) {
-    CAPTURE(extreme);
-    auto finger = features;
-    for (int k = 0; k < 60; ++k) {
-      Image<S> taxels(2, 2, S(10));
-      taxels(0, 1) = k > 20 && k < 40 && k % 3 == 0 ? extreme : S(10);
-      taxels(1, 1) = k % 4 < 2 ? S(20) : S(10);
-      const auto sample = finger(taxels, k);
-      CHECK(sample.waves >= 0);
-      CHECK(sample.waves <= 4);
-      CHECK_FALSE(std::isnan(sample.frequency_hz));
-      if (k >= 8 && (k <= 20 || k >= 40 + 16)) {
-        CHECK(sample.location == 3);
-        CHECK(sample.waves == 2);
-      }
-    }
-  }
 }
 
 TEST_CASE("taxel features: bursts of late samples keep the clock of the vibration",

@@ -106,23 +106,6 @@ const Corners<double> pulled_triangle = {Vector{0.0, -0.3, 0.2}, Vector{1.8, 0.4
 
 }  // namespace
 
-TEST_CASE("membrane triangle: energy of a known deformation", "[traction]") {
-  // stretched by a along x and b along y, then sheared, then placed anywhere in space
-  const double a = 1.3, b = 0.9, shear = 0.4;
-  const auto put = [&](double x, double y) {
-    return Vector{a * x + shear * y, 0.6 * b * y, 0.8 * b * y};
-  };
-  const Corners<double> free = {Vector{0, 0, 0}, Vector{1.5, 0, 0}, Vector{0.5, 1, 0}};
-  const Corners<double> now = {put(0, 0), put(1.5, 0), put(0.5, 1)};
-  const auto reference = test::stress_free(free);
-  CHECK(reference.area_mm2 == Approx(0.75));
-  const double sq_sum = a * a + b * b + shear * shear;
-  CHECK(test::stretch_sq_sum(reference, now) == Approx(sq_sum));
-  CHECK(test::stored_energy(reference, now) ==
-        Approx(0.75 * 0.5 * (sq_sum + 1 / (a * b * a * b) - 3)));
-  CHECK(std::abs(test::stored_energy(reference, free)) < 1e-14);
-}
-
 TEST_CASE("membrane triangle: forces are the slope of the energy", "[traction]") {
   using D = test::Tangent<double>;
   const auto reference = test::stress_free(some_triangle);
@@ -747,84 +730,6 @@ TEST_CASE("the sum of the loads is what crosses the border", "[traction][law]") 
   });
 }
 
-TEST_CASE("the sum of the loads over all dots, from the border alone", "[traction][law]") {
-  // All interior dots are summed. Their load balances the pull of the cells along the border of the
-  // grid on the border dots, with the sign reversed, and the pressure on the area that does not
-  // belong to the border dots.
-  rc::prop("force", [] {
-    Pad pad = Pad::any();
-    for (auto& flag : pad.contact.cells) {
-      flag = 1;
-    }
-    const Seen seen = look(pad, {.ring_dots = 0, .fade_dots = 0});
-    RC_PRE(seen.result.dots_left_out == 2 * (pad.dots.rows() + pad.dots.cols()) - 4);
-    const Index rows = pad.dots.rows(), cols = pad.dots.cols();
-    Vector pull{0, 0, 0}, area{0, 0, 0};
-    for (Index i = 0; i + 1 < rows; ++i) {
-      for (Index j = 0; j + 1 < cols; ++j) {
-        const bool at_border = i == 0 || j == 0 || i + 2 == rows || j + 2 == cols;
-        const auto corners = [&](const Dots& d) {
-          return std::array<Vector, 4>{d(i, j), d(i, j + 1), d(i + 1, j + 1), d(i + 1, j)};
-        };
-        const auto x = corners(pad.dots);
-        const auto f = corners(pad.free);
-        const Index row[4] = {i, i, i + 1, i + 1}, col[4] = {j, j + 1, j + 1, j};
-        for (std::size_t k = 0; at_border && k < 4; ++k) {
-          const auto ear = [&](const std::array<Vector, 4>& d) {
-            return test::Corners<double>{d[(k + 3) % 4], d[k], d[(k + 1) % 4]};
-          };
-          const auto of = test::corner_forces(test::stress_free(ear(f)), ear(x));
-          const auto doubled = test::twice_area_vector(ear(x));
-          for (std::size_t c = 0; c < 3; ++c) {
-            const std::size_t at = (k + 3 + c) % 4;
-            if (row[at] == 0 || col[at] == 0 || row[at] + 1 == rows || col[at] + 1 == cols) {
-              pull = pull + 0.5 * of[c];
-              area = area + -1.0 / 12 * doubled;
-            }
-          }
-        }
-      }
-    }
-    // the area vector of any surface is half the integral of x times dx along its border
-    const auto along = [&](Index r0, Index c0, Index r1, Index c1) {
-      area = area + 0.5 * cross(pad.dots(r0, c0), pad.dots(r1, c1));
-    };
-    for (Index j = 0; j + 1 < cols; ++j) {
-      along(0, j, 0, j + 1);
-      along(rows - 1, j + 1, rows - 1, j);
-    }
-    for (Index i = 0; i + 1 < rows; ++i) {
-      along(i, cols - 1, i + 1, cols - 1);
-      along(i + 1, 0, i, 0);
-    }
-    const Vector expected = pad.mu_t * pull + -pad.pressure * area;
-    RC_ASSERT(distance(seen.result.force_n, expected) <= 1e-10 * typical_load(pad));
-  });
-}
-
-TEST_CASE("a dot that is missing or wrong spoils what touches it and nothing else",
-          "[traction][law]") {
-  rc::prop("all other loads stay to the last bit", [] {
-    const Pad pad = Pad::any();
-    const Seen before = look(pad);
-    RC_PRE(before.result.has_force());
-    Pad holed = pad;
-    const Index i0 = test::whole(0, pad.dots.rows() - 1), j0 = test::whole(0, pad.dots.cols() - 1);
-    const double bad[] = {std::numeric_limits<double>::quiet_NaN(),
-                          std::numeric_limits<double>::infinity(), 1e300, 5e5};
-    holed.dots(i0, j0).y = bad[test::whole(0, 3)];
-    const Seen after = look(holed);
-    for (Index i = 0; i < pad.dots.rows(); ++i) {
-      for (Index j = 0; j < pad.dots.cols(); ++j) {
-        const bool near = std::abs(i - i0) <= 1 && std::abs(j - j0) <= 1;
-        const double p = before.maps.pressure_mpa()(i, j), q = after.maps.pressure_mpa()(i, j);
-        RC_ASSERT(is_finite(q) == (is_finite(p) && !near));
-        RC_ASSERT(near || !is_finite(p) || p == q);
-      }
-    }
-  });
-}
-
 TEST_CASE("traction of anything at all", "[traction][law][fuzz]") {
   const double infinity = std::numeric_limits<double>::infinity();
   const double odd[] = {0,        -0.0,      1e-300,
@@ -862,15 +767,6 @@ TEST_CASE("traction of anything at all", "[traction][law][fuzz]") {
 }
 
 namespace {
-
-template <class S, class From>
-Corners<S> as(const Corners<From>& x) {
-  Corners<S> out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = {S(x[k].x), S(x[k].y), S(x[k].z)};
-  }
-  return out;
-}
 
 /// Largest errors of a load and of the force, relative to the pressure and to the largest
 /// component.
@@ -917,29 +813,6 @@ Loss loss_of(const test::TractionScene& s) {
 }
 
 }  // namespace
-
-TEST_CASE("membrane triangle with fifty digits", "[traction][hard]") {
-  test::Gauss gauss(4);
-  double worst = 0;
-  for (int k = 0; k < 200; ++k) {
-    Corners<double> free = {Point3<double>{0, 0, 0}, {1.5, 0, 0}, {0.3, 1.4, 0}};
-    Corners<double> now = free;
-    for (std::size_t c = 0; c < 3; ++c) {
-      free[c] = free[c] + 0.1 * Point3<double>{gauss(), gauss(), gauss()};
-      now[c] = now[c] + 0.2 * Point3<double>{gauss(), gauss(), gauss()};
-    }
-    const auto force = test::corner_forces(test::stress_free(free), now);
-    const auto exact =
-        test::corner_forces(test::stress_free(as<Digits50>(free)), as<Digits50>(now));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double scale = std::sqrt(static_cast<double>(squared_norm(exact[c])));
-      worst = (std::max)(
-          worst, std::abs(static_cast<double>(Digits50(force[c].x) - exact[c].x)) / (1 + scale));
-    }
-  }
-  INFO("worst error of a force " << worst);
-  CHECK(worst < 1e-13);
-}
 
 TEST_CASE("traction in double and in float against fifty digits", "[traction][hard]") {
   for (const auto& s : test::traction_scenes()) {

@@ -105,12 +105,6 @@ bool has_no_answer(const ShiftResult<double>& r) {
          std::isnan(r.rotation_rad) && std::isnan(r.residual_rms) && r.dots == 0;
 }
 
-template <class Dots_, class Mean_>
-struct Way {
-  using Dots = Dots_;
-  using Mean = Mean_;
-};
-
 }  // namespace
 
 TEMPLATE_TEST_CASE("contact shift: angles near half a turn do not wrap",
@@ -537,50 +531,6 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
     RC_ASSERT(b.displacement.x == unit * a.displacement.x);
     RC_ASSERT(b.residual_rms == unit * a.residual_rms);
   });
-  rc::prop("seen the other way round, the motion is the one back", [] {
-    const Scene s = any_scene();
-    const auto a = TestType::of(s), b = TestType::of({s.dots, s.free, s.contact});
-    RC_ASSERT(apart(a.rotation_rad, -b.rotation_rad) < tolerance<TestType>);
-    RC_ASSERT(std::abs(a.residual_rms - b.residual_rms) < tolerance<TestType>);
-    RC_ASSERT(TestType::Mean::is_robust ||  // otherwise positions with unequal weights
-              apart(a.displacement, {-b.displacement.x, -b.displacement.y}) < 1e-12);
-  });
-}
-
-TEMPLATE_TEST_CASE("contact shift: motions add",
-                   "[contact_shift][law]",
-                   (SceneWay<EdgeDots, PlainMean>),
-                   (SceneWay<EdgeDots, HuberMean>),
-                   (SceneWay<ContactDots, PlainMean>),
-                   (SceneWay<ContactDots, HuberMean>)) {
-  rc::prop("a rigid motion has its angle, and carries the dots' middle along", [] {
-    Scene s = any_scene();
-    const Rigid motion = any_motion();
-    s.dots = mapped(s.free, motion);
-    const auto r = TestType::of(s);
-    RC_ASSERT(r.status == ShiftStatus::measured);
-    RC_ASSERT(apart(r.rotation_rad, motion.angle_rad) < 1e-13);
-    RC_ASSERT(r.residual_rms < 1e-13);
-  });
-  rc::prop("a further rigid motion adds its angle to that of any dots", [] {
-    Scene s = any_scene();
-    const Rigid motion = any_motion();
-    const auto a = TestType::of(s);
-    s.dots = mapped(s.dots, motion);
-    const auto b = TestType::of(s);
-    RC_ASSERT(apart(b.rotation_rad, a.rotation_rad + motion.angle_rad) < tolerance<TestType>);
-    RC_ASSERT(std::abs(a.residual_rms - b.residual_rms) < tolerance<TestType>);
-  });
-  rc::prop("and a further shift its displacement", [] {
-    Scene s = any_scene();
-    const Rigid motion{0, test::uniform(-20, 20), test::uniform(-20, 20)};
-    const auto a = TestType::of(s);
-    s.dots = mapped(s.dots, motion);
-    const auto b = TestType::of(s);
-    RC_ASSERT(apart(b.rotation_rad, a.rotation_rad) < tolerance<TestType>);
-    RC_ASSERT(apart(b.displacement, {a.displacement.x + motion.x, a.displacement.y + motion.y}) <
-              tolerance<TestType>);
-  });
 }
 
 TEST_CASE("contact shift: no rigid motion is nearer to the dots", "[contact_shift][law]") {
@@ -664,31 +614,6 @@ TEST_CASE("contact shift: which dots take part", "[contact_shift][law]") {
       const double expected = push.x / static_cast<double>(edge);
       RC_ASSERT(std::abs(r.displacement.x - expected) < 1e-10);
     }
-  });
-  rc::prop("what the others do is no matter", [] {
-    Scene s = any_scene();
-    const auto a = shift<ContactDots, HuberMean>(s);
-    for (std::size_t k = 0; k < s.dots.cells.size(); ++k) {
-      if (s.contact.cells[k] != Touch::contact) {
-        s.dots.cells[k] = {test::uniform(-1e3, 1e3), test::nan};
-        s.free.cells[k] = {test::uniform(-1e3, 1e3), test::uniform(-1e3, 1e3)};
-      }
-    }
-    const auto b = shift<ContactDots, HuberMean>(s);
-    RC_ASSERT(a.displacement.x == b.displacement.x && a.rotation_rad == b.rotation_rad);
-    RC_ASSERT(a.dots == b.dots);
-  });
-  rc::prop("contact and its opposite have the same edge", [] {
-    Scene s = any_scene();
-    const auto a = shift<EdgeDots, PlainMean>(s);
-    for (Touch& touch : s.contact.cells) {
-      touch = touch == Touch::contact ? Touch::none
-              : touch == Touch::none  ? Touch::contact
-                                      : Touch::unknown;
-    }
-    const auto b = shift<EdgeDots, PlainMean>(s);
-    RC_ASSERT(a.dots == b.dots && a.rotation_rad == b.rotation_rad);
-    RC_ASSERT(a.displacement.x == b.displacement.x);
   });
 }
 

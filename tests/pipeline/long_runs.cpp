@@ -87,58 +87,7 @@ test::Image<std::uint8_t> pressed(const test::Image<float>& cells) {
   return contact;
 }
 
-template <class Search>
-void search_again_and_again(const Search& search) {
-  Any any;
-  auto state = search;
-  long ended = 0;
-  bool stays = true;
-  for (long k = 0; k < frames(); ++k) {
-    const auto before = state.command();
-    const auto after = state(static_cast<PreslipStatus>(static_cast<int>(any.number(0, 4))));
-    if (is_end(before.phase)) {
-      stays = stays && after.phase == before.phase && after.force_n == before.force_n;
-      ++ended;
-      if (any.once_in(10)) {
-        state = search;
-      }
-    }
-  }
-  CHECK(stays);
-  CHECK(ended > 0);  // no run is endless
-}
-
 }  // namespace
-
-TEST_CASE("long runs: grip control comes back from anything", "[long_run]") {
-  Any any;
-  GripControl<double> control({}, 3);
-  FrictionLimit<double> limit;
-  bool within = true;
-  for (long k = 0; k < frames(); ++k) {
-    const double ratio = any.once_in(20) ? test::nan : any.number(-0.1, 1.1);
-    const double step_s = any.once_in(50) ? any.number(-1, 1000) : 0.01;
-    const auto update = static_cast<RatioUpdate>(static_cast<int>(any.number(0, 4)));
-    const ContactLoad<double> load{any.number(-1, 9), any.number(0, 9), any.number(-9, 9)};
-    const double force = control(limit(load, ratio, update), step_s).force_n;
-    within = within && force >= 0.5 && force <= 20;
-    if (any.once_in(5000)) {
-      control = GripControl<double>({}, 3);
-    }
-  }
-  CHECK(within);
-  // the force now depends on the current input alone
-  GripControl<double> fresh;
-  control.follow(5);
-  fresh.follow(5);
-  (void)control(1.0, RatioUpdate::fresh, 0.01);
-  (void)fresh(1.0, RatioUpdate::fresh, 0.01);
-  for (int k = 0; k < 200; ++k) {
-    const double ratio = k % 3 == 0 ? 0.5 : 0.9;
-    CHECK(control(ratio, RatioUpdate::fresh, 0.01).force_n ==
-          fresh(ratio, RatioUpdate::fresh, 0.01).force_n);
-  }
-}
 
 TEST_CASE("long runs: after a lost contact a stick ratio is that of a start", "[long_run]") {
   Any any;
@@ -200,30 +149,6 @@ TEST_CASE("long runs: a window of taxels forgets all that was before it", "[long
   }
 }
 
-TEST_CASE("long runs: after a reset a stick ratio in space is that of a start", "[long_run]") {
-  Any any;
-  StickRatio<> state(6, 6, {.noise = 0.005}), fresh = state;
-  const test::Image<std::uint8_t> contact(6, 6, 1), none(6, 6, 0);
-  double shift_mm = 0;
-  bool sound = true;
-  for (long k = 0; k < frames(); ++k) {
-    shift_mm = any.once_in(100) ? 0 : shift_mm + any.number(-0.05, 0.06);
-    const auto r = state(dots_in_space(any, shift_mm), any.once_in(40) ? none : contact);
-    sound = sound && (std::isnan(r.stick_ratio) || (r.stick_ratio >= 0 && r.stick_ratio <= 1));
-    if (any.once_in(3000)) {
-      state.reset();
-    }
-  }
-  CHECK(sound);
-  state.reset();
-  for (int k = 0; k < 20; ++k) {
-    const auto dots = dots_in_space(any, 0.03 * k);
-    const auto a = state(dots, contact), b = fresh(dots, contact);
-    CHECK(a.status == b.status);
-    CHECK((a.stick_ratio == b.stick_ratio || std::isnan(b.stick_ratio)));
-  }
-}
-
 TEST_CASE("long runs: after lost contact an object's motion begins anew", "[long_run]") {
   Any any;
   ObjectMotion<> motion(6, 6), fresh(6, 6);
@@ -276,10 +201,4 @@ TEST_CASE("long runs: a copy of the start forgets all slides", "[long_run]") {
     CHECK(a.evidence == b.evidence);
     CHECK(a.slide_px.x == b.slide_px.x);
   }
-}
-
-TEST_CASE("long runs: a search for the holding force ends, and stays where it has ended",
-          "[long_run]") {
-  search_again_and_again(LoosenUntilPreslip<>());
-  search_again_and_again(LiftWithRegrip<>());
 }

@@ -149,16 +149,6 @@ std::string lines_of(int frame, const DotGrid& dots) {
   return lines;
 }
 
-cv::Mat rotated(const cv::Mat& image, double degrees) {
-  const auto& camera = press().recording.sensor.camera;
-  const cv::Point2f axis(static_cast<float>(camera.center_x_px),
-                         static_cast<float>(camera.center_y_px));
-  cv::Mat result;
-  cv::warpAffine(image, result, cv::getRotationMatrix2D(axis, degrees, 1), image.size(),
-                 cv::INTER_LINEAR);
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("the dots of the bundled recording are found where they are") {
@@ -177,72 +167,6 @@ TEST_CASE("the dots of the bundled recording are found where they are") {
     INFO("frame " << k);
     check(source.of(static_cast<int>(k), press().frames[k]), truth[k]);
   }
-}
-
-TEST_CASE("a 16-bit frame shows the dots of the 8-bit frame") {
-  cv::Mat wide;
-  press().frames[6].convertTo(wide, CV_16U, 256);
-  CHECK(largest_distance(press().source().of(6, press().frames[6]), press().source().of(6, wide)) <
-        1e-4);
-}
-
-TEST_CASE("a print that is rotated is found rotated") {
-  const double degrees = GENERATE(-8.0, 3.0, 8.0);
-  const auto& recording = press().recording;
-  const replay::DotSource source(bundled, recording.sensor, rotated(recording.reference, degrees),
-                                 recording.reference_depth, 1);
-  REQUIRE(source.present());
-  const double angle = degrees * CV_PI / 180;
-  const cv::Matx22d turn(std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle));
-  const cv::Vec2d axis(recording.sensor.camera.center_x_px, recording.sensor.camera.center_y_px);
-  DotGrid truth = true_dots().front();
-  for (cv::Vec2d& dot : truth) {
-    dot = axis + turn * (dot - axis);
-  }
-  const Comparison result = compare(source.initial(), truth);
-  CHECK(result.found >= 0.95 * result.true_count);
-  CHECK(result.wrong == 0);
-  CHECK(result.rms_px < 0.12);
-}
-
-TEST_CASE("a black frame shows no dots, and the next frame has them again") {
-  auto source = press().source();
-  const std::vector<DotGrid> truth = true_dots();
-  source.of(5, press().frames[5]);
-  const cv::Mat black(press().frames[6].size(), CV_8UC3, cv::Scalar::all(0));
-  CHECK(fingerpad::count_present(source.of(6, black)) == 0);
-  const Comparison result = compare(source.of(7, press().frames[7]), truth[7]);
-  CHECK(result.found >= 0.99 * result.true_count);
-  CHECK(result.wrong == 0);
-}
-
-TEST_CASE("what hides a part of the frame hides only dots there") {
-  const std::vector<DotGrid> truth = true_dots();
-  const int level = GENERATE(0, 30, 255);
-  auto source = press().source();
-  source.of(5, press().frames[5]);
-  const cv::Rect hidden(150, 200, 110, 90);
-  cv::Mat frame = press().frames[6].clone();
-  frame(hidden) = cv::Scalar::all(level);
-  const DotGrid found = source.of(6, frame);
-  CHECK(compare(found, truth[6]).wrong == 0);
-  const cv::Point margin(8, 8);
-  const cv::Rect near(hidden.tl() - margin, hidden.br() + margin);
-  const cv::Rect inside(hidden.tl() + margin, hidden.br() - margin);
-  for (int i = 0; i < found.rows; ++i) {
-    for (int j = 0; j < found.cols; ++j) {
-      if (!is_present(truth[6](i, j))) {
-        continue;
-      }
-      const cv::Point at(cv::Point2d(truth[6](i, j)[0], truth[6](i, j)[1]));
-      INFO("row " << i << ", col " << j);
-      CHECK((near.contains(at) || is_present(found(i, j))));
-      CHECK_FALSE((inside.contains(at) && is_present(found(i, j))));
-    }
-  }
-  const Comparison after = compare(source.of(7, press().frames[7]), truth[7]);
-  CHECK(after.found >= 0.99 * after.true_count);
-  CHECK(after.wrong == 0);
 }
 
 TEST_CASE("rows of dots around the rim are found beside the grid, and given with each frame") {
@@ -298,16 +222,6 @@ TEST_CASE("rows of dots around the rim are found beside the grid, and given with
   sensor.rim->side_rows[1].count = 41;
   const replay::DotSource other(bundled, sensor, reference, press().recording.reference_depth, 0);
   CHECK(other.side_how().find("none: the row of side dots at 3 mm from the rim shows") == 0);
-}
-
-TEST_CASE("noise alone is no print") {
-  cv::Mat noise(press().recording.reference.size(), CV_8UC3);
-  cv::theRNG().state = 20110801;
-  cv::randn(noise, cv::Scalar::all(60), cv::Scalar::all(1));
-  const replay::DotSource source(bundled, press().recording.sensor, noise,
-                                 press().recording.reference_depth, 1);
-  CHECK_FALSE(source.present());
-  CHECK(source.how() == "none");
 }
 
 TEST_CASE("without a word about dots there are none") {

@@ -91,32 +91,6 @@ TEST_CASE("elastic gel: closed forms are the sums of point loads", "[elastic_gel
   }
 }
 
-TEST_CASE("elastic gel: Hertz, and Cattaneo's share that sticks", "[elastic_gel]") {
-  const GelPad pad;
-  BallOnGel<> contact(pad);
-  CHECK(!contact.touches());
-  CHECK(std::isnan(contact.stick_share()));
-  CHECK(contact.displacement_mm({1, 2}).z == 0);
-  contact.drag(1.5, {0, 0});
-  const double a = contact.radius_mm();
-  CHECK(a * a * a == Approx(3 * 1.5 * 10 / (4 * 0.2 / 0.75)));
-  CHECK(contact.stick_share() == 1);
-  CHECK(contact.displacement_mm({0, 0}).z == Approx(-contact.depth_mm()));
-
-  const double far = contact.max_pull_mm();
-  contact.drag(1.5, {far / 2, 0});
-  CHECK(contact.stick_share() == Approx(0.5));
-  // Q = mu P (1 - (c / a)^3)
-  CHECK(contact.shear_n().x == Approx(0.6 * 1.5 * (1 - std::pow(0.5, 1.5))));
-  CHECK(contact.shear_n().y == 0);
-  contact.drag(1.5, {3 * far, 0});
-  CHECK(contact.slides());
-  CHECK(contact.stick_share() == 0);
-  CHECK(contact.shear_n().x == Approx(0.9));
-  contact.drag(0, {3 * far, 0});
-  CHECK(contact.displacement_mm({3 * far, 0}).x == 0);
-}
-
 // Of the load of a fluid pad the slipping part carries all, as the membrane that sticks carries
 // none.
 TEST_CASE("fluid beside elastic: contact of 1 N, and what sticks of it", "[elastic_gel]") {
@@ -136,57 +110,5 @@ TEST_CASE("fluid beside elastic: contact of 1 N, and what sticks of it", "[elast
     CHECK(contact.shear_n().x == Approx(load * 0.6));
     CHECK(contact.stick_share() == Approx(on_gel).margin(0.006));
     CHECK(1 - load < contact.stick_share());
-  }
-}
-
-TEST_CASE("elastic gel: what sticks goes with the ball, what slips stays behind", "[elastic_gel]") {
-  rc::prop("for every gel, load and direction", [] {
-    const GelPad pad{.young_mpa = test::log_uniform(0.05, 2),
-                     .poisson = test::uniform(0, 0.5),
-                     .ball_mm = test::log_uniform(3, 40),
-                     .friction = test::uniform(0.1, 1.5)};
-    BallOnGel<> contact(pad);
-    const double force = test::log_uniform(0.05, 20);
-    contact.drag(force, {0, 0});
-    // without the tangential pull: the effect of the normal load, which is subtracted
-    const double angle = test::uniform(0, 2 * pi);
-    const Point along = {std::cos(angle), std::sin(angle)};
-    const double pull = test::uniform(0.05, 1) * contact.max_pull_mm();
-    BallOnGel<> pressed(pad, pull * along);
-    pressed.drag(force, pull * along);
-    contact.drag(force, pull * along);
-    const double r = test::uniform(0, 1);
-    const double at_angle = test::uniform(0, 2 * pi);
-    const auto carried = [&](double radius) {
-      const Point p = pull * along + radius * Point{std::cos(at_angle), std::sin(at_angle)};
-      const auto both = contact.displacement_mm(p);
-      const auto normal = pressed.displacement_mm(p);
-      return dot(Point{both.x - normal.x, both.y - normal.y}, along);
-    };
-    const double inside = carried(r * contact.stick_radius_mm());
-    RC_ASSERT(std::abs(inside - pull) < 1e-9 * pull);
-    const double a = contact.radius_mm();
-    const double c = contact.stick_radius_mm();
-    const double outside = carried(c + (a - c) * test::uniform(0.01, 1));
-    RC_ASSERT(outside < pull);
-    RC_ASSERT(outside > 0.0);
-  });
-}
-
-TEST_CASE("elastic gel: fifty digits and duals", "[elastic_gel]") {
-  using test::Digits50;
-  const GelPad pad;
-  BallOnGel<Digits50> fine(pad);
-  BallOnGel<> plain(pad);
-  fine.drag(Digits50(1.5), {Digits50(0), Digits50(0)});
-  plain.drag(1.5, {0, 0});
-  fine.drag(Digits50(1.5), {Digits50(0.5), Digits50(0.25)});
-  plain.drag(1.5, {0.5, 0.25});
-  for (const Point& p : {Point{1, 2}, Point{5, -3}}) {
-    const auto a = fine.displacement_mm({Digits50(p.x), Digits50(p.y)});
-    const auto b = plain.displacement_mm(p);
-    CHECK(b.x == Approx(static_cast<double>(a.x)).epsilon(1e-13));
-    CHECK(b.y == Approx(static_cast<double>(a.y)).epsilon(1e-12).margin(1e-14));
-    CHECK(b.z == Approx(static_cast<double>(a.z)).epsilon(1e-13));
   }
 }
