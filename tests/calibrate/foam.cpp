@@ -388,16 +388,6 @@ TEST_CASE("taxel noise: taxels that are bad for a while or always", "[taxel_nois
   CHECK(high.deviations[0] > 0.4);
 }
 
-TEST_CASE("taxel noise: a dead taxel takes nothing from what is typical", "[taxel_noise]") {
-  const auto noise = recorded(1, 3, 16 * 200, 51, [](Index, Index, Index j, double one) {
-                       return j == 0 ? none : j == 1 ? 12.0 : 800 + 7 * one;
-                     }).fit();
-  CHECK(noise.typical == Approx(7).epsilon(0.04));
-  CHECK(std::isnan(noise.deviations[0]));
-  CHECK(noise.deviations[1] == noise.typical);  // at rest
-  CHECK(noise.deviations[2] == noise.typical);
-}
-
 TEST_CASE("taxel noise: a clock that jumps begins a new window", "[taxel_noise]") {
   const auto run = [](Index samples, Index between_jumps, double jump_s) {
     TaxelNoiseCalibration calibration(1, 2);

@@ -337,21 +337,6 @@ TEST_CASE("a calibration depends neither on order nor on units", "[calibrate][fo
                 std::ldexp(before.curve.coefficients[i], -k * power));
     }
   });
-  rc::prop("the axes of the image", [] {
-    Samples samples = any_samples();
-    const auto before = fit_tangential_force(all(samples), 2.0);
-    const double angle = test::uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
-    const auto rotated = [&](const Point2<double>& p) {
-      return Point2<double>{c * p.x - s * p.y, s * p.x + c * p.y};
-    };
-    for (Sample& sample : samples) {
-      sample.displacement_mm = rotated(sample.displacement_mm);
-      sample.tangential_force_n = rotated(sample.tangential_force_n);
-    }
-    const auto after = fit_tangential_force(all(samples), 2.0);
-    RC_ASSERT(std::abs(after.law.exponent - before.law.exponent) < 1e-9);
-    RC_ASSERT(std::abs(after.law.slope - before.law.slope) < 1e-8);
-  });
 }
 
 TEST_CASE("a gauge is not tared if a constant explains most of the residual, in any unit",
@@ -393,20 +378,6 @@ TEST_CASE("a gauge of the normal force is not tared, however small the forces",
     CAPTURE(unit);
     CHECK(told(unit, 0.11) == std::string(cause::gauge_not_tared));
     CHECK(told(unit, 0.09) == nullptr);
-  }
-}
-
-TEST_CASE("samples given twice count twice", "[calibrate][force]") {
-  Random random(10);
-  const Samples once = measured({}, 30, random);
-  Samples twice = once;
-  twice.insert(twice.end(), once.begin(), once.end());
-  const auto a = fit_normal_force(all(once));
-  const auto b = fit_normal_force(all(twice));
-  for (std::size_t k = 1; k <= 2; ++k) {
-    CHECK(b.curve.coefficients[k] == Approx(a.curve.coefficients[k]).epsilon(1e-12));
-    // the same sum of squares over 58 instead of 28 degrees of freedom
-    CHECK(b.curve.covariance[k][k] == Approx(a.curve.covariance[k][k] * 28 / 58).epsilon(1e-12));
   }
 }
 

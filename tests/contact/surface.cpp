@@ -507,24 +507,6 @@ TEST_CASE("surface: a scene of another size, or higher up", "[surface]") {
           before, after, [&](const Point& p, bool place) { return (place ? c : 1) * p; }, 1 / c));
     });
   });
-  rc::prop("a map of heights may be lifted", [] {
-    const Patch patch = any_patch();
-    const double lift = test::uniform(-5, 5);
-    Image<double> lifted = patch.depth;
-    for (double& z : lifted.cells) {
-      z += lift;
-    }
-    const auto camera = camera_for<OrthographicCamera<double>>(patch.size);
-    const auto before = fit_surface(camera, patch.depth, patch.mask);
-    const auto after = fit_surface(camera, lifted, patch.mask);
-    RC_ASSERT((before.ok() && after.ok()));
-    RC_ASSERT(is_moved(
-        before, after,
-        [&](const Point& p, bool place) {
-          return Point{p.x, p.y, p.z + (place ? lift : 0)};
-        },
-        1));
-  });
 }
 
 TEST_CASE("surface: a pixel without depth is as one without contact", "[surface]") {

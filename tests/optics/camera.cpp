@@ -57,18 +57,6 @@ TEST_CASE("rays obey Snell's law", "[optics]") {
     RC_ASSERT(near(ray.path_factor, 1 + inv_cos, inv_cos, 6));
     RC_ASSERT(ray.path_factor >= 2 - 4 * epsilon<double>());
   });
-  rc::prop("without a change of index nothing is bent", [] {
-    auto camera = any_camera();
-    camera.refractive_index = 1;
-    camera.plate_index = 1;
-    const double t = any_tangent();
-    const auto ray = ray_at_tangent(camera, t);
-    RC_ASSERT(ray.tan_fluid == t);
-    RC_ASSERT(near(ray.plate_rho_mm, t * camera.plate_distance_mm, ray.plate_rho_mm, 4));
-    const auto& h = ray;
-    RC_ASSERT(near(h.meridional_mm, camera.plate_distance_mm, h.meridional_mm, 16));
-    RC_ASSERT(near(h.sagittal_mm, camera.plate_distance_mm, h.sagittal_mm, 16));
-  });
 }
 
 TEST_CASE("the plate", "[optics]") {
@@ -186,22 +174,6 @@ TEST_CASE("symmetry of the picture", "[optics]") {
     const double tall = y * camera.pixel_aspect;
     RC_ASSERT(
         near(a.x * tall, a.y * x, scale * (std::abs(a.x) + std::abs(a.y)), 8));  // one azimuth
-  });
-  rc::prop("a deeper point on the same ray lies farther out, by the tangent in the fluid", [] {
-    const auto camera = any_camera();
-    const auto p = any_offset(camera);
-    const double row = camera.center_y_px + p.y;
-    const double col = camera.center_x_px + p.x;
-    const double z = test::uniform(0, 15);
-    const double dz = test::uniform(0.01, 5);
-    const auto at = [&](double depth) {
-      const auto point = point_at(camera, row, col, depth);
-      return std::hypot(point.x, point.y);
-    };
-    const auto ray = ray_at_pixel(camera, row, col);
-    RC_ASSERT(at(z + dz) >= at(z));
-    RC_ASSERT(near(at(0), ray.plate_rho_mm, ray.plate_rho_mm, 16));
-    RC_ASSERT(near(at(z + dz) - at(z), dz * ray.tan_fluid, at(z + dz), 32));
   });
 }
 

@@ -84,22 +84,6 @@ DotGrid moved(const DotGrid& dots, const cv::Vec2d& by) {
   return all;
 }
 
-/// Largest distance of dots of the same name; infinite if the sizes differ.
-double largest_error_px(const DotGrid& found, const DotGrid& truth) {
-  if (found.size() != truth.size()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double largest = 0;
-  for (int i = 0; i < truth.rows; ++i) {
-    for (int j = 0; j < truth.cols; ++j) {
-      if (is_present(found(i, j))) {
-        largest = (std::max)(largest, cv::norm(found(i, j) - truth(i, j)));
-      }
-    }
-  }
-  return largest;
-}
-
 /// A recording with a sensor.json and frames, and a folder for the results.
 class DotRecording {
  public:
@@ -162,89 +146,6 @@ TEST_CASE("a first frame without dots does no harm") {
   const auto dots = recording.dots();
   CHECK(fingerpad::count_present(dots[0]) == 0);
   CHECK(fingerpad::count_present(dots[2]) == 35);
-}
-
-TEST_CASE("lost dots are missing while they are lost, and come back under their own name") {
-  const DotGrid truth = grid_of({7, 5}, 30, 5);
-  std::vector<cv::Mat> frames;
-  std::vector<DotGrid> truths;
-  for (int k = 0; k < 16; ++k) {
-    truths.push_back(moved(truth, {2.5 * k - 10, 0.5 * k}));
-    frames.push_back(drawn({}, truths.back()));
-  }
-  SECTION("a few of them, under a shadow") {
-    const std::vector<cv::Point> hidden = {{2, 1}, {3, 1}, {2, 2}};
-    for (std::size_t k = 4; k < 12; ++k) {
-      DotGrid rest = truths[k].clone();
-      for (const cv::Point& at : hidden) {
-        rest(at) = replay::no_dot();
-      }
-      frames[k] = drawn({}, rest);
-    }
-    const auto dots = DotRecording(frames).dots();
-    for (std::size_t k = 0; k < dots.size(); ++k) {
-      INFO("frame " << k);
-      CHECK(largest_error_px(dots[k], truths[k]) < 0.2);
-      for (const cv::Point& at : hidden) {
-        CHECK(is_present(dots[k](at)) == !(k >= 4 && k < 12));
-      }
-    }
-  }
-  SECTION("all of them") {
-    for (std::size_t k = 5; k < 8; ++k) {
-      frames[k] = cv::Scalar(0, 0, 0);
-    }
-    const auto dots = DotRecording(frames).dots();
-    CHECK(fingerpad::count_present(dots[6]) == 0);
-    CHECK(fingerpad::count_present(dots[9]) == 35);
-    CHECK(largest_error_px(dots[9], truths[9]) < 0.2);
-    CHECK(largest_error_px(dots[15], truths[15]) < 0.2);
-  }
-}
-
-TEST_CASE("a small contact that moves one dot at once by a quarter of a pitch keeps it") {
-  const DotGrid truth = grid_of({11, 8}, 26, 0);
-  std::vector<cv::Mat> frames;
-  std::vector<DotGrid> truths;
-  for (int k = 0; k < 12; ++k) {
-    truths.push_back(truth.clone());
-    truths.back()(4, 5) += k < 6 ? cv::Vec2d(0, 0) : cv::Vec2d(5.2, 3.2);
-    frames.push_back(drawn({}, truths.back()));
-  }
-  const auto dots = DotRecording(frames).dots();
-  for (std::size_t k = 0; k < dots.size(); ++k) {
-    INFO("frame " << k);
-    CHECK(largest_error_px(dots[k], truths[k]) < 0.2);
-    CHECK(fingerpad::count_present(dots[k]) == 88);
-  }
-}
-
-TEST_CASE("a compressed video gives the dots of its pictures") {
-  const DotGrid truth = grid_of({7, 5}, 30, 10);
-  Pad pad;
-  pad.radius_px = 6;
-  const DotRecording recording(std::vector<cv::Mat>{}, R"({"video": "dots.avi", "dots": {}})");
-  const int count = 12;
-  {
-    const replay::QuietCodecs quiet;
-    cv::VideoWriter video((recording.folder() / "dots.avi").string(),
-                          cv::VideoWriter::fourcc('X', 'V', 'I', 'D'), 25, frame_size);
-    for (int k = 0; k < count && video.isOpened(); ++k) {
-      video.write(drawn(pad, moved(truth, {1.5 * k, -0.7 * k})));
-    }
-  }
-  const fs::path file = recording.folder() / "dots.avi";
-  if (!fs::exists(file) || fs::file_size(file) < 2000) {
-    WARN("no encoder for MPEG-4 here; compressed videos are not tested");
-    return;
-  }
-  const auto dots = recording.dots();
-  REQUIRE(dots.size() == static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k) {
-    const DotGrid& found = dots[static_cast<std::size_t>(k)];
-    CHECK(fingerpad::count_present(found) >= 33);
-    CHECK(largest_error_px(found, moved(truth, {1.5 * k, -0.7 * k})) < 0.7);
-  }
 }
 
 TEST_CASE("the stick ratio of a dots-only recording") {

@@ -491,53 +491,6 @@ TEST_CASE("lost readings do not end the run") {
   }
 }
 
-TEST_CASE("samples whose time is missing or not later are as if they were not there") {
-  const Taxels taxels = taxels_of(rows, cols, samples, creeping);
-  // a short history, from which nothing may be dropped
-  const std::string sensor = with_foam(R"("noise": 4, "sample_period_s": 0.03125, "history": 12)");
-  const auto expected = run(taxels, sensor);
-  REQUIRE(first_alarm(expected) >= first_begins);
-  Taxels with = taxels;
-  std::vector<int> places = {3, 40, 76, 98};
-  for (int k = first_begins; k < samples; k += 2) {
-    places.push_back(k);
-    places.push_back(k);
-  }
-  const std::string much_earlier = number(97 / rate_hz);
-  const std::string same = "same";
-  const std::vector<std::string> times = {"", "nan", same, much_earlier};
-  for (std::size_t k = places.size(); k-- > 0;) {
-    const auto place = static_cast<std::size_t>(places[k]);
-    auto line = taxels.lines[place];
-    const std::string& time = times[k % times.size()];
-    line[1] =
-        time == same || (time == much_earlier && place > 102) ? taxels.lines[place - 1][1] : time;
-    for (std::size_t cell = 2; cell < line.size(); ++cell) {
-      line[cell] = "777";
-    }
-    with.lines.insert(with.lines.begin() + places[k], line);
-  }
-  const auto lines = run(with, sensor);
-  REQUIRE(lines.size() == expected.size() + places.size());
-  std::size_t at = 0;
-  int refused = 0;
-  for (const Line& line : lines) {
-    if (line.at("taxel_status") == "refused") {
-      ++refused;
-      CHECK(line.at("preslip") == "0");
-      CHECK(line.at("sum") == "");
-      CHECK(line.at("center_x_mm") == "");
-      CHECK(line.at("taxels_left_out") == "");
-      continue;
-    }
-    REQUIRE(at < expected.size());
-    INFO("sample " << at);
-    CHECK(line == expected[at]);
-    ++at;
-  }
-  CHECK(refused == static_cast<int>(places.size()));
-}
-
 TEST_CASE("frames are named as in the file, and counted on where their names are lost") {
   Taxels taxels = taxels_of(rows, cols, 30, held);
   for (int k = 0; k < 30; ++k) {
@@ -560,30 +513,6 @@ TEST_CASE("a slow recording is not one of gaps") {
   CHECK(first_alarm(lines) == first_alarm(run(taxels_of(rows, cols, samples, creeping))));
   const auto gaps = run(taxels, with_foam(R"("longest_gap_s": 1)"));
   CHECK(gaps.back().at("taxel_status") == "clock jumps");
-}
-
-TEST_CASE("vibration without noise is found, and more noise hides it") {
-  const auto clean = [](int k, int i, int j) {
-    return 100.0 + (i == 1 && j == 1 && k >= first_begins ? 5 * std::sin(0.84 * k) : 0.0);
-  };
-  const Taxels taxels = taxels_of(rows, cols, samples, clean);
-  CHECK(run(taxels).back().at("taxel_status") == "vibrating");
-  CHECK(run(taxels).back().at("vibrating_row") == "1");
-  CHECK(run(taxels, with_foam(R"("noise": 1.3)")).back().at("taxel_status") == "vibrating");
-  CHECK(run(taxels, with_foam(R"("noise": 1.5)")).back().at("taxel_status") == "quiet");
-  // a thousandth of the largest reading, which differs here, times 2.5
-  const auto beside = [&](double largest, const std::string& keys = "") {
-    return run(taxels_of(rows, cols, samples,
-                         [&](int k, int i, int j) {
-                           return i == 5 && j == 3 ? largest : clean(k, i, j);
-                         }),
-               keys.empty() ? keys : with_foam(keys))
-        .back()
-        .at("taxel_status");
-  };
-  CHECK(beside(1300) == "vibrating");
-  CHECK(beside(1500) == "quiet");
-  CHECK(beside(1500, R"("saturated_at": 1400)") == "vibrating");
 }
 
 TEST_CASE("a table that is none of taxels is refused with the column's name") {
