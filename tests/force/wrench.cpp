@@ -202,6 +202,16 @@ TEST_CASE("wrench: whether it is uncertain goes by the press that is measured", 
   CHECK(press_of(1.03 * limit_n).ok());
 }
 
+TEST_CASE("wrench: by default it is uncertain by the largest press so far", "[wrench]") {
+  const RimScene& s = scene("drag");
+  SeenRim rim(s, SeenRim::options_of(s, true), 0.11, 7);
+  const auto first = rim.fit(0);
+  CHECK(first.status == Status::uncertain);
+  CHECK(std::fabs(first.force_n.z) < 0.2);
+  CHECK(rim.fit(1).ok());
+  CHECK(rim.fit(0).ok());
+}
+
 TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   int within = 0, all = 0;
   double worst = 0;

@@ -49,8 +49,8 @@ struct WrenchOptions {
   double thickness_mm = 0;    ///< of the membrane, >= 0, for the bend of a loose rim; 0: not known
   double outlier_sd = 4;      ///< residuals beyond count linearly, > 0
   Index max_marks = 400;      ///< in [20, 100000]; what comes after is not used
-  /// Press that is measured, N, >= 0, by which `uncertain` is judged; 0: what the pressure exerts
-  /// on a quarter of the base.
+  /// Press that is measured, N, >= 0, by which `uncertain` is judged; 0: the largest so far, at
+  /// least what the pressure exerts on an eighth of the base.
   double full_scale_n = 0;
 };
 
@@ -210,6 +210,8 @@ class Wrench {
     const double degrees = freedom();
     result.misfit = std::sqrt(misfit_ / degrees);
     read_load(static_cast<double>(2 * places_.size()) / degrees, free_pictures, result);
+    const double press_n = std::fabs(result.force_n.z) - 2 * std::sqrt(result.covariance(2, 2));
+    largest_n_ = result.misfit > 2.5 ? largest_n_ : (std::max)(largest_n_, press_n);
     result.status = result.misfit > 2.5                  ? WrenchStatus::poor_fit
                     : is_uncertain(result, pressure_mpa) ? WrenchStatus::uncertain
                                                          : WrenchStatus::ok;
@@ -239,9 +241,10 @@ class Wrench {
   /// by 3 % of F / 2 along the base, 9.6 % of F, 9 % of 0.9 r F, and 5.7 % of 0.3 r F about the
   /// axis.
   bool is_uncertain(const WrenchResult& result, double pressure_mpa) const {
-    const double area_mm2 = std::numbers::pi * square(options_.cap.base_radius_mm) / 4;
-    const double press_n =
-        options_.full_scale_n > 0 ? options_.full_scale_n : pressure_mpa * area_mm2;
+    const double area_mm2 = std::numbers::pi * square(options_.cap.base_radius_mm) / 8;
+    const double press_n = options_.full_scale_n > 0
+                               ? options_.full_scale_n
+                               : (std::max)(largest_n_, pressure_mpa * area_mm2);
     const double arm_mm = std::sqrt(press_n / (std::numbers::pi * pressure_mpa));
     const auto exceeds = [&](Eigen::Index first, Eigen::Index axes, double most) {
       double variance = 0;
@@ -531,7 +534,8 @@ class Wrench {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> normal_, slopes_;
   Eigen::VectorXd gradient_, rhs_, residuals_, weights_;
   Eigen::LLT<Eigen::MatrixXd> solver_;
-  double misfit_ = 0;  // sum of squares
+  double misfit_ = 0;     // sum of squares
+  double largest_n_ = 0;  // press so far, less two standard deviations
 };
 
 }  // namespace v1
