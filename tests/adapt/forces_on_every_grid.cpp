@@ -57,28 +57,6 @@ TEST_CASE("traction from every grid", "[adapt]") {
                                  [&](const auto& flags) { check(stress_free, scene.dots, flags); });
 }
 
-TEST_CASE("printed six-axis force from every grid", "[adapt]") {
-  const test::RoundPad<test::FilmSide> pad;
-  auto rim = rim_of(pad);
-  rim.count = 24;
-  const auto border = rim.borders();
-  const auto dots = rim.dots([&](double at) {
-    return test::RimLoad{pad.tension(pad.radius_mm, test::pressed_mpa), 0.01 * std::cos(at)};
-  });
-  const auto found = [&](const auto& fixed, const auto& beside) {
-    published::SegmentEquilibrium<> wrench(fixed);
-    return wrench(pad, beside, test::pressed_mpa);
-  };
-  const auto truth = found(border, dots);
-  REQUIRE(truth.ok());
-  const auto check = [&](const auto& r) {
-    CHECK(same(r.force_n, truth.force_n));
-    CHECK(same(r.moment_n_mm, truth.moment_n_mm));
-  };
-  from_every_grid<Vector>(border, [&](const auto& fixed) { check(found(fixed, dots)); });
-  from_every_grid<Vector>(dots, [&](const auto& beside) { check(found(border, beside)); });
-}
-
 TEST_CASE("taxel features from every grid", "[adapt]") {
   const auto readings = [](int k) {
     test::Image<double> taxels(16, 4, 500.0);
@@ -101,26 +79,6 @@ TEST_CASE("taxel features from every grid", "[adapt]") {
     CHECK(r.location == truth.location);
     CHECK(r.waves == truth.waves);
   });
-}
-
-TEST_CASE("stick ratio in space from every grid", "[adapt]") {
-  const test::TractionScene& before = test::traction_scenes()[1];
-  const test::TractionScene& after = test::traction_scenes()[2];
-  StickRatio<> begun(21, 21, {.noise = 0.005});
-  (void)begun(before.dots, before.contact);
-  auto state = begun;
-  const auto truth = state(after.dots, after.contact);
-  REQUIRE(truth.updated());
-  const auto check = [&](const auto& dots, const auto& contact) {
-    auto copy = begun;
-    const auto r = copy(dots, contact);
-    CHECK(r.status == truth.status);
-    CHECK(same_bits(r.stick_ratio, truth.stick_ratio));
-    CHECK(same_bits(copy.slips()(10, 10).x, state.slips()(10, 10).x));
-  };
-  from_every_grid<Vector>(after.dots, [&](const auto& dots) { check(dots, after.contact); });
-  from_every_grid<unsigned char>(after.contact,
-                                 [&](const auto& flags) { check(after.dots, flags); });
 }
 
 namespace {

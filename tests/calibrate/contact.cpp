@@ -183,19 +183,6 @@ TEST_CASE("calibration: free frames seem touched as rarely as the threshold says
   CHECK(touched >= 1);
 }
 
-TEST_CASE("calibration: two frames are enough for half of the level", "[contact_region]") {
-  const Index rows = 180, cols = 200;
-  const auto camera = test::height_map(rows, cols, 0.1);
-  test::Random random(9);
-  std::vector<Image<float>> frames(2, test::depths_of<float>(camera, free_pad(0.05), rows, cols));
-  for (auto& frame : frames) {
-    add_noise(frame, 0.002, random);
-  }
-  const ThresholdFit pad = fit_contact_threshold(camera, frames, 8);
-  CHECK(pad.noise_per_mm > 0);
-  CHECK(pad.threshold_per_mm == Approx(pad.median_per_mm / 2));
-}
-
 TEST_CASE("calibration: the smallest press that is found, and false contact", "[contact_region]") {
   const Index rows = 160, cols = 160;
   const auto camera = test::height_map(rows, cols, 0.15);

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -125,44 +124,6 @@ TEST_CASE("intensity calibration: the variance is that of the constant", "[inten
   const double ratio = std::sqrt(square_sum / trials / variance);
   CHECK(ratio > 0.6);
   CHECK(ratio < 1.6);
-}
-
-TEST_CASE("intensity calibration: rows and columns may be exchanged", "[intensity_depth]") {
-  Gel gel;
-  gel.noise = 1;
-  Random random(5);
-  const auto exchanged = [](const Image<double>& frame) {
-    Image<double> other(width, height);
-    for (Index i = 0; i < height; ++i) {
-      for (Index j = 0; j < width; ++j) {
-        other(j, i) = frame(i, j);
-      }
-    }
-    return other;
-  };
-  const Image<double> pressed = gel.pressed(random);
-  const IntensityFit<> one = fit(gel, std::array{pressed});
-  const IntensityFit<> same = fit_intensity(exchanged(gel.free()), std::array{exchanged(pressed)},
-                                            gel.ball_mm, gel.mm_per_px);
-  REQUIRE(one.ok());
-  CHECK(same.law.linear_mm == Approx(one.law.linear_mm).epsilon(1e-6));
-  CHECK(same.variance_mm2 == Approx(one.variance_mm2).epsilon(1e-4));
-}
-
-TEST_CASE("intensity calibration: bytes and grain, as a camera has them", "[intensity_depth]") {
-  Gel gel;
-  gel.noise = 1;
-  Random random(7);
-  Image<std::uint8_t> frame(height, width);
-  const auto pressed = gel.pressed(random);
-  for (std::size_t k = 0; k < frame.cells.size(); ++k) {
-    frame.cells[k] = test::stored<std::uint8_t>(pressed.cells[k]);
-  }
-  frame(50, 60) = 255;
-  const IntensityFit<> one = fit(gel, std::array{frame});
-  REQUIRE(one.ok());
-  CHECK(one.law.linear_mm == Approx(4).epsilon(0.02));
-  CHECK(one.mean_error_mm < 0.01);
 }
 
 TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_depth]") {

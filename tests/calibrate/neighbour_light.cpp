@@ -116,22 +116,6 @@ TEST_CASE("calibration of neighbour light: the stated deviations are those of ma
   CHECK(fit.rms_before_mm > fit.rms_after_mm);
 }
 
-TEST_CASE("calibration of neighbour light: compensation with the fit removes the error") {
-  const NeighbourLight<double> light{7, 0.0015, 0.3};
-  const Map reference = membrane(0, 0);
-  const Frames measured = {membrane(2, 1)};
-  const Frames truth = truths(light, reference, measured);
-  const auto fit = fit_of(reference, measured, truth, {5, 9});
-  NeighbourLightCompensation<double> compensation(fit.light, pitch_mm, reference);
-  Map out(64, 80);
-  REQUIRE(compensation(measured[0], out) == FrameStatus::ok);
-  for (Index k = 0; k < out.size(); ++k) {
-    if (!std::isnan(truth[0](k))) {
-      CHECK(out(k) == Approx((std::max)(truth[0](k), 0.0)).margin(1e-9));
-    }
-  }
-}
-
 TEST_CASE("calibration of neighbour light: degenerate frames are refused") {
   const Map reference = membrane(0, 0);
   const Frames pressed = {membrane(2, 0)};

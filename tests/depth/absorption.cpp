@@ -126,12 +126,6 @@ TEMPLATE_TEST_CASE("laws of W", "[absorption]", float, double, long double) {
     RC_ASSERT(scattered_light(S(0), S(test::uniform(0, 1)), p) == S(0));
     RC_ASSERT(scattered_light(S(test::uniform(0, 14)), S(0), p) == S(0));
   });
-  rc::prop("it grows with depth", [] {
-    const auto p = as<S>(any_pencil());
-    const S c = S(test::log_uniform(1e-6, 0.1));
-    const S l = S(test::uniform(0, 14));
-    RC_ASSERT(scattered_light(S(l + S(0.01)), c, p) > scattered_light(l, c, p));
-  });
   rc::prop("it adds up over intervals: below a, and below b as seen through a", [] {
     using std::exp;
     const auto p = as<S>(any_pencil());
@@ -162,13 +156,6 @@ TEMPLATE_TEST_CASE("laws of W", "[absorption]", float, double, long double) {
     const S c = S(test::log_uniform(1e-30, 1e-24));
     const S volume = c * (h_m * h_s * l + (h_m + h_s) * l * l / 2 + l * l * l / 3);
     RC_ASSERT(test::relative_error(scattered_light(l, c, p), volume) <= 6 * epsilon<S>());
-  });
-  rc::prop("the two heights are alike", [] {
-    const auto p = as<S>(any_pencil());
-    auto q = p;
-    std::swap(q.meridional_mm, q.sagittal_mm);
-    const S l = S(test::uniform(0, 14));
-    RC_ASSERT(scattered_light(l, S(0.03), q) == scattered_light(l, S(0.03), p));
   });
 }
 

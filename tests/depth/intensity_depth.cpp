@@ -2,16 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "fingerpad/depth/intensity_depth.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
-#include <vector>
 
-#include "fingerpad/contact/surface.hpp"
-#include "fingerpad/gel/gel_contact.hpp"
-#include "fingerpad/gel/gel_slide.hpp"
-#include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/generators.hpp"
@@ -32,45 +25,6 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 double free_level(Index i, Index j) {
   return 150 + 0.3 * static_cast<double>(i) - 0.2 * static_cast<double>(j);
 }
-
-/// A ball in a gel of 4 mm. A one-channel camera has calibrated the darkening on free frames.
-struct PressedBall {
-  static constexpr Index rows = 96;
-  static constexpr Index cols = 120;
-  static constexpr double mm_per_px = 0.05;
-  static constexpr double gel_mm = 4;
-  double ball_mm = test::uniform(2, 4);
-  double contact_px = test::uniform(24, 30);
-  IntensityLaw<> law{test::uniform(2, 4), 0, 0};
-  test::Random random{static_cast<std::uint64_t>(test::whole(1, 1000))};
-
-  double depth_mm(double r_px) const {
-    const double r = r_px * mm_per_px;
-    const double a = contact_px * mm_per_px;
-    return r < a ? std::sqrt(ball_mm * ball_mm - r * r) - std::sqrt(ball_mm * ball_mm - a * a) : 0;
-  }
-  Image<std::uint8_t> frame(bool is_pressed, const Point2<double>& way_px) {
-    Image<std::uint8_t> image(rows, cols);
-    for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < cols; ++j) {
-        const Point2<double> from_ball = {static_cast<double>(j) - 59.5 - way_px.x,
-                                          static_cast<double>(i) - 47.5 - way_px.y};
-        const double depth = is_pressed ? depth_mm(norm(from_ball)) : 0;
-        const double level = free_level(i, j) * std::exp(-depth / law.linear_mm);
-        image(i, j) = static_cast<std::uint8_t>(level + 0.3 * random.normal() + 0.5);
-      }
-    }
-    return image;
-  }
-};
-
-/// Results of a frame: heights of the gel's surface, and the contact.
-struct BallSeen {
-  Image<double> depth_mm{PressedBall::rows, PressedBall::cols};
-  Image<double> height_mm = depth_mm;
-  Image<Touch> contact{PressedBall::rows, PressedBall::cols};
-  GelResult found;
-};
 
 }  // namespace
 
@@ -168,83 +122,6 @@ TEST_CASE("intensity depth: smoothing averages the noise", "[intensity_depth]") 
   CHECK(spread(0) == Approx(3.0 / 120).epsilon(0.1));
   // the mean of a Gaussian with the sd s has the noise of 4 pi s^2 pixels
   CHECK(spread(2) == Approx(spread(0) / std::sqrt(4 * 3.14159 * 4)).epsilon(0.2));
-}
-
-TEST_CASE("intensity depth: contact, surface and slide of a ball", "[intensity_depth]") {
-  rc::prop("for every ball and law", [] {
-    PressedBall ball;
-    const auto free = ball.frame(false, {0, 0});
-    IntensityDepth<double> depth(free, ball.law);
-    const auto mat_of = [](const Image<std::uint8_t>& image) {
-      cv::Mat mat(int(image.rows()), int(image.cols()), CV_8UC1);
-      std::copy(image.cells.begin(), image.cells.end(), mat.data);
-      return mat;
-    };
-    GelContact gel(
-        std::vector{mat_of(free), mat_of(ball.frame(false, {0, 0}))},
-        {.cell_px = 2, .smoothing_px = 2, .dot_px = 0, .max_gap_px = 8, .min_region_px = 100});
-    const auto see = [&](const Point2<double>& way_px) {
-      const auto frame = ball.frame(true, way_px);
-      BallSeen seen;
-      RC_ASSERT(depth(frame, seen.depth_mm) == FrameStatus::ok);
-      seen.found = gel(mat_of(frame));
-      RC_ASSERT(seen.found.ok());
-      for (Index i = 0; i < PressedBall::rows; ++i) {
-        for (Index j = 0; j < PressedBall::cols; ++j) {
-          const bool touches = gel.mask()(int(i / 2), int(j / 2)) != 0;
-          seen.contact(i, j) = touches ? Touch::contact : Touch::none;
-        }
-      }
-      for (std::size_t k = 0; k < seen.depth_mm.cells.size(); ++k) {
-        seen.height_mm.cells[k] = PressedBall::gel_mm - seen.depth_mm.cells[k];
-      }
-      return seen;
-    };
-    const BallSeen before = see({0, 0});
-    const double radius_px = std::sqrt(double(before.found.contact_px) / 3.14159265358979);
-    // where the frame differs enough; the mean over 2 px extends beyond the contact
-    RC_LOG() << radius_px << " px for " << ball.contact_px << "\n";
-    const double dark = -ball.law.linear_mm * std::log(1 - gel.threshold());
-    RC_ASSERT(ball.depth_mm(radius_px + 2) < dark);
-    RC_ASSERT(radius_px < ball.contact_px + 2);
-
-    Image<std::uint8_t> inner(before.contact.rows(), before.contact.cols(), 0);
-    for (Index i = 4; i + 4 < inner.rows(); ++i) {  // a strip of 4 px along the border is left out
-      for (Index j = 4; j + 4 < inner.cols(); ++j) {
-        const auto in_contact = [&](Index row, Index col) {
-          return is_contact(before.contact(i + row, j + col));
-        };
-        inner(i, j) = in_contact(0, 0) && in_contact(4, 0) && in_contact(-4, 0) &&
-                      in_contact(0, 4) && in_contact(0, -4) && in_contact(3, 3) &&
-                      in_contact(-3, 3) && in_contact(3, -3) && in_contact(-3, -3);
-      }
-    }
-    const OrthographicCamera<double> plan{59.5, 47.5, PressedBall::mm_per_px};
-    const auto surface = fit_surface(plan, before.height_mm, inner);
-    RC_ASSERT(surface.ok());
-    const double curvature = (surface.curvature_1_per_mm + surface.curvature_2_per_mm) / 2;
-    RC_LOG() << 1 / curvature << " mm for " << ball.ball_mm << "\n";
-    // the standard error assumes independent pixels, but the mean over 2 px correlates them
-    const double as_one = std::sqrt(4 * 3.14159265358979) * 2;
-    const double sd = as_one * surface.curvature_1_sd_per_mm * ball.ball_mm;
-    RC_ASSERT(sd < 0.04);  // otherwise the next line would allow anything
-    RC_ASSERT(std::abs(curvature * ball.ball_mm - 1) < 0.01 + 4 * sd);
-
-    const Point2<double> way = {test::uniform(-6, 6), test::uniform(-6, 6)};
-    Image<Point2<double>> dots(3, 3);  // standing dots
-    for (Index k = 0; k < 9; ++k) {
-      dots(k / 3, k % 3) = {double(39 + 20 * (k % 3)), double(27 + 20 * (k / 3))};
-    }
-    GelSlide slide(PressedBall::rows, PressedBall::cols, dots, {.cell_px = 1});
-    (void)slide(before.depth_mm, before.contact, dots);
-    const BallSeen after = see(way);
-    const auto slid = slide(after.depth_mm, after.contact, dots);
-    RC_LOG() << slid.imprint_px.x << ", " << slid.imprint_px.y << " +- " << slid.imprint_sd_px
-             << " px for " << way.x << ", " << way.y << "\n";
-    RC_ASSERT(norm(slid.imprint_px - way) < 0.2);
-    RC_ASSERT(slid.ok() == (slid.dots >= 3));  // a small ball covers fewer
-    RC_ASSERT((!slid.ok() || norm(slid.slide_px - way) < 0.2));
-  });
 }
 
 TEST_CASE("intensity depth: fifty digits and duals", "[intensity_depth]") {

@@ -218,31 +218,6 @@ TEST_CASE("neighbour light: the pad may lie anywhere in the image and be transpo
   });
 }
 
-TEST_CASE("neighbour light: a missing pixel changes nothing beyond its disc") {
-  rc::prop("missing pixels", [] {
-    const NeighbourLight<float> light = as<float>(random_light(8));
-    const Map<float> reference = membrane(32, 40, 0, 0).cast<float>();
-    const Map<float> depth = membrane(32, 40, 2, 1).cast<float>();
-    const Map<float> before = compensated(light, reference, depth);
-    const Index i = test::whole(0, 31), j = test::whole(0, 39);
-    Map<float> hole = depth;
-    const float infinity = std::numeric_limits<float>::infinity();
-    hole(i, j) = *rc::gen::element(std::nanf(""), infinity, -infinity);
-    const Map<float> after = compensated(light, reference, hole);
-    for (Index r = 0; r < 32; ++r) {
-      for (Index c = 0; c < 40; ++c) {
-        const bool here = r == i && c == j;
-        RC_ASSERT(std::isnan(after(r, c)) == std::isnan(hole(r, c)));
-        const double distance = std::hypot(static_cast<double>(r - i), static_cast<double>(c - j));
-        const bool far = distance > static_cast<double>(light.radius_px) * 1.5 + 1;
-        RC_ASSERT(here || !far || std::isnan(depth(r, c)) ||
-                  std::abs(after(r, c) - before(r, c)) < 1e-5F);  // rounding of sums
-        RC_ASSERT(here || std::isnan(depth(r, c)) || std::isfinite(after(r, c)));
-      }
-    }
-  });
-}
-
 TEST_CASE("neighbour light: absurd depths stay finite and harm nobody") {
   const Map<float> reference = membrane(24, 24, 0, 0).cast<float>();
   Map<float> depth = reference;
@@ -357,20 +332,6 @@ TEST_CASE("neighbour light: bad parameters are refused by name, value and range"
         "NeighbourLight: pixel_aspect = 0, must be in [0.1, 10]");
   CHECK(refusal({}, 0, 4) == "NeighbourLightCompensation: pitch_mm = 0, must be finite and > 0");
   CHECK(refusal({}, 0.1F, 0) == "NeighbourLightCompensation: rows = 0, must be in [1, 1000000]");
-}
-
-TEST_CASE("neighbour light: other numbers") {
-  const Map<double> reference = membrane(24, 28, 0, 0);
-  const Map<double> depth = membrane(24, 28, 2, 1);
-  const NeighbourLight<double> light{7, 0.001, 0.2};
-  const Map<double> in_double = compensated(light, reference, depth);
-  const Map<long double> in_long = compensated<long double>(
-      as<long double>(light), reference.cast<long double>(), depth.cast<long double>());
-  for (Index k = 0; k < depth.size(); ++k) {
-    if (!std::isnan(depth(k))) {
-      CHECK(static_cast<double>(in_long(k)) == Approx(in_double(k)).margin(1e-12));
-    }
-  }
 }
 
 TEST_CASE("quick functions of float keep their bounds") {

@@ -116,26 +116,12 @@ TEMPLATE_TEST_CASE("a block has the samples of a million pixels one by one",
       green.cells[k] = any();
     }
     const auto [r, g] = samples_of(red, green, step);
-    const auto law = [&](const Image<Pixel>& of, Index row, Index col) {
-      double whole = 0, count = 0;
-      for (Index j = col * step; j < (col + 1) * step; ++j) {
-        for (Index i = row * step; i < (row + 1) * step; ++i) {
-          const auto x = static_cast<double>(red(i, j)), y = static_cast<double>(green(i, j));
-          if (x > 0 && y > 0 && x < top && y < top) {
-            whole += static_cast<double>(of(i, j));
-            count += 1;
-          }
-        }
-      }
-      empty += count == 0 ? 1 : 0;
-      if (count == 0) {
-        return static_cast<Sample>(naive(red, green, row, col, step));
-      }
-      return static_cast<Sample>(whole / count * (sizeof(Pixel) == 1 ? 256 : 1) + 0.5);
-    };
     for (Index i = 0; i < r.rows(); ++i) {
       for (Index j = 0; j < r.cols(); ++j) {
-        const Sample expected[] = {law(red, i, j), law(green, i, j)}, found[] = {r(i, j), g(i, j)};
+        const Sample expected[] = {static_cast<Sample>(naive(red, green, i, j, step) + 0.5),
+                                   static_cast<Sample>(naive(green, red, i, j, step) + 0.5)},
+                     found[] = {r(i, j), g(i, j)};
+        empty += expected[0] == 0 ? 1 : 0;
         for (const std::size_t k : {0U, 1U}) {
           if (found[k] != expected[k]) {
             CAPTURE(step, i, j, k, found[k], expected[k]);

@@ -325,39 +325,6 @@ TEST_CASE("wrench: a sheet that bends at its clamp needs a loose rim, and its th
   }
 }
 
-TEST_CASE("wrench: a scene that is turned", "[wrench]") {
-  const RimScene& s = scene("two_balls");
-  SeenRim rim(s, SeenRim::options_of(s, false), 0, 1);
-  const auto before = rim.fit(2);
-  const double turn = 0.8, c = std::cos(turn), d = std::sin(turn);
-  const auto camera = s.camera();
-  for (Mark& m : rim.marks) {
-    const double x = m.px.x - camera.center_x_px, y = m.px.y - camera.center_y_px;
-    m.px = {camera.center_x_px + c * x - d * y, camera.center_y_px + d * x + c * y};
-    m.azimuth_rad += turn;
-  }
-  const auto after = rim.wrench(rim.marks, s.frames[2].pressure_mpa);
-  const double scale = s.largest()[1];
-  CHECK(std::fabs(after.force_n.x - (c * before.force_n.x - d * before.force_n.y)) < 2e-3 * scale);
-  CHECK(std::fabs(after.force_n.y - (d * before.force_n.x + c * before.force_n.y)) < 2e-3 * scale);
-  CHECK(std::fabs(after.force_n.z - before.force_n.z) < 2e-3 * scale);
-  CHECK(std::fabs(after.moment_n_mm.z - before.moment_n_mm.z) < 0.05 * scale);
-}
-
-TEST_CASE("wrench: forces grow with the modulus at the same stretch", "[wrench]") {
-  const RimScene& s = scene("mix");
-  auto options = SeenRim::options_of(s, true);
-  SeenRim rim(s, options, 0.02, 3);
-  const auto once = rim.fit(2);
-  options.modulus_n_per_mm *= 3;
-  Wrench<> other(s.camera(), options);
-  REQUIRE(other.begin(3 * s.frames[0].pressure_mpa));
-  const auto thrice = other(rim.marks, 3 * s.frames[2].pressure_mpa);
-  for (std::size_t k = 0; k < 6; ++k) {
-    CHECK(std::fabs(parts(thrice)[k] - 3 * parts(once)[k]) < 1e-3);
-  }
-}
-
 TEST_CASE("wrench: what a wrong modulus does, or a wrong gauge in the free picture, is known",
           "[wrench]") {
   struct Fault {

@@ -66,15 +66,6 @@ Means<Mean> means_of(const Frame<Pixel>& frame,
 
 }  // namespace
 
-TEST_CASE("the largest window of the brightest 8-bit pixels", "[window]") {
-  const Frame<std::uint8_t> frame(260, 300, 255);
-  const Image<std::uint8_t> all(260, 300, 1);
-  const auto means = means_of(frame, all, 253, {0, 256});
-  CHECK(means.outer_red(130, 150) == 255.0f);
-  CHECK(means.green(130, 150) == 255.0f);
-  CHECK(means.red(0, 0) == 255.0f);
-}
-
 TEST_CASE("the largest window of the largest 16-bit numbers", "[window]") {
   const int level = GENERATE(-32768, 32768);
   Frame<std::int32_t> frame(256, 270, level);

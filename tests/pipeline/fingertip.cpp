@@ -531,39 +531,6 @@ TEST_CASE("a fingertip takes the neighbour light off as that method does", "[cha
   CHECK(moved > 0.01);
 }
 
-TEST_CASE("a fingertip takes as much neighbour light off samples", "[chain]") {
-  const auto taken_off = [](int step) {
-    auto options = depth_alone(step);
-    Fingertip tip(options);
-    const auto free_mm = depth_of(tip, frames()[0].view());
-    options.neighbour_light = fingerpad::NeighbourLight<float>{.radius_px = 12};
-    options.free_depth_mm = fingerpad::as_view(free_mm);
-    Fingertip lit(options);
-    CHECK(touch_of(lit, frames()[1].view()).ok());
-    const auto without = depth_of(tip, frames()[1].view()),
-               with = depth_of(lit, frames()[1].view());
-    test::Image<float> taken(tip.rows(), tip.cols(), 0.0F);
-    for (std::size_t k = 0; k < taken.cells.size(); ++k) {
-      taken.cells[k] = without.cells[k] - with.cells[k];
-    }
-    return taken;
-  };
-  const auto every_pixel = taken_off(1), samples = taken_off(3);
-  double product = 0, taken_sq = 0, count = 0;
-  for (std::size_t k = 0; k < samples.cells.size(); ++k) {
-    const auto found = static_cast<double>(samples.cells[k]);
-    const auto wanted = static_cast<double>(every_pixel.cells[k]);
-    if (found == found && wanted == wanted) {
-      product += found * wanted;
-      taken_sq += wanted * wanted;
-      ++count;
-    }
-  }
-  CHECK(count > 10000);
-  CHECK(taken_sq > 1e-5 * count);
-  CHECK(product / taken_sq == Approx(1).margin(0.1));
-}
-
 TEST_CASE("a fingertip says that the neighbour light's free depth is not this pad's", "[chain]") {
   Fingertip free(depth_alone(1));
   auto in_m = depth_of(free, frames()[0].view());

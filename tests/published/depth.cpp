@@ -152,24 +152,6 @@ TEST_CASE("published depth: sixteen halvings end at an odd multiple of 1 / 2^15 
   }
 }
 
-TEST_CASE("published depth: the free pad is found, where one height for all rays is the light's",
-          "[published]") {
-  const Pad pad = printed_pad();
-  const Image<double> free = pad.free_depths();
-  const auto frame = pad.frame<double>(free);
-  published::DepthEstimator<> estimate(pad.published(3), frame.red, frame.green, free);
-  Image<double> depth(pad.rows, pad.cols);
-  REQUIRE(estimate(frame.red, frame.green, depth));
-  CHECK(std::count_if(depth.cells.begin(), depth.cells.end(), [](double l) { return l > 0; }) >
-        1500);
-  // its own frame has its own g
-  for (std::size_t k = 0; k < free.cells.size(); ++k) {
-    if (free.cells[k] > 0.1) {
-      REQUIRE(std::abs(depth.cells[k] - free.cells[k]) <= 14.0 / 32768 + 1e-9);
-    }
-  }
-}
-
 namespace {
 
 /// Mean red and green of the pixels of a window that lie in the pad and are neither 0 nor 255.

@@ -216,32 +216,6 @@ TEST_CASE("published contact conditions: what each lets pass", "[published]") {
   CHECK(touches(clamped, 0.05, 0.05, 0.0501));
 }
 
-TEST_CASE("published contact conditions: a cylinder bends alike however it is turned",
-          "[published]") {
-  constexpr double bend = 0.05;
-  for (double turn_deg = 7; turn_deg < 180; turn_deg += 15) {  // none has a level section
-    const double c = std::cos(turn_deg * std::numbers::pi / 180);
-    const double s = std::sin(turn_deg * std::numbers::pi / 180);
-    Image<double> z(61, 61);
-    for (Index i = 0; i < 61; ++i) {
-      for (Index j = 0; j < 61; ++j) {
-        const double x = 0.08 * static_cast<double>(j - 30), y = 0.08 * static_cast<double>(i - 30);
-        z(i, j) = 9 - bend * (c * x + s * y) * (c * x + s * y) / 2;
-      }
-    }
-    CAPTURE(turn_deg);
-    for (const bool clamps : {false, true}) {
-      const double mean = clamps ? bend / 2 : bend;  // the clamped mean is over n directions
-      published::SlidesContactOptions o;
-      o.clamps = clamps;
-      o.threshold_per_mm = 0.99 * mean;
-      CHECK_FALSE(published::touches(z, 30, 30, o));
-      o.threshold_per_mm = 1.01 * mean;
-      CHECK(published::touches(z, 30, 30, o));
-    }
-  }
-}
-
 TEST_CASE("published contact conditions: which sections there are, in a turned press",
           "[published]") {
   // one section in 18 bulges, wherever the press is turned: only the test of every direction sees

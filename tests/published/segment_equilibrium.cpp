@@ -139,28 +139,6 @@ TEST_CASE("published six-axis force: contour lines every 0.2 mm, of each line it
   }
 }
 
-TEST_CASE("the printed iteration keeps the symmetry of a twisted pad", "[published]") {
-  // The shear that a twist puts into every segment turns with the segment: pushes along the plate
-  // cancel around the rim, and the pull does not depend on the sense of the twist.
-  const RoundPad<ArcSide> pad;
-  const auto rim = rim_of(pad);
-  const double normal = pad.tension(pad.radius_mm, pressed_mpa);
-  SegmentEquilibrium<> wrench(rim.borders());
-  const auto twisted = [&](double shear) {
-    const auto load = [&](double) { return RimLoad{normal, shear * normal}; };
-    const auto found = wrench(pad, rim.dots(load), pressed_mpa);
-    REQUIRE(found.ok());
-    return found;
-  };
-  const auto left = twisted(0.2), right = twisted(-0.2);
-  const double size = std::abs(left.force_n.z);
-  CHECK(std::abs(left.force_n.x) < 1e-6 * size);
-  CHECK(std::abs(left.force_n.y) < 1e-6 * size);
-  CHECK(left.force_n.z == Approx(right.force_n.z).epsilon(1e-6));
-  CHECK(left.moment_n_mm.z == Approx(-right.moment_n_mm.z).epsilon(1e-6));
-  CHECK(std::abs(left.moment_n_mm.z) > 1);
-}
-
 TEST_CASE("the printed iteration keeps the symmetry of a press and of a mirror", "[published]") {
   const RoundPad<FilmSide> pad;
   const auto rim = rim_of(pad);
@@ -222,39 +200,6 @@ TEST_CASE("the printed iteration is linear in the pressure", "[published]") {
   REQUIRE(twice.ok());
   CHECK(norm(twice.force_n - 2.0 * once.force_n) < 1e-9 * norm(once.force_n));
   CHECK(norm(twice.moment_n_mm - 2.0 * once.moment_n_mm) < 1e-9 * norm(once.moment_n_mm));
-}
-
-TEST_CASE("the printed iteration knows no unit of length", "[published]") {
-  struct Doubled {
-    MembranePoint<double> operator()(double x, double y) const {
-      const auto p = TiltedTop()(x / 2, y / 2);
-      return {2 * p.height_mm, p.along_x, p.along_y};
-    }
-    bool in_contact(double x, double y) const { return TiltedTop().in_contact(x / 2, y / 2); }
-  };
-  const RoundPad<ArcSide> pad;
-  const auto rim = rim_of(pad);
-  const auto doubled = [](auto points) {
-    for (auto& p : points.cells) {
-      p = 2.0 * p;
-    }
-    return points;
-  };
-  const auto dots = rim.dots([&](double at) { return RimLoad{0.1 + 0.01 * std::cos(at), 0.01}; });
-  const Options small = {.contours = 20, .passes = 2};
-  const Options large = {.base_radius_mm = 2 * small.base_radius_mm,
-                         .delta_z_mm = 2 * small.delta_z_mm,
-                         .contours = 20,
-                         .passes = 2,
-                         .step_mm = 2 * small.step_mm,
-                         .inside_mm = 2 * small.inside_mm};
-  SegmentEquilibrium<> one(rim.borders(), small), two(doubled(rim.borders()), large);
-  const auto a = one(TiltedTop(), dots, pressed_mpa),
-             b = two(Doubled(), doubled(dots), pressed_mpa);
-  REQUIRE(a.ok());
-  REQUIRE(b.ok());
-  CHECK(norm(b.force_n - 4.0 * a.force_n) < 1e-9 * norm(b.force_n));
-  CHECK(norm(b.moment_n_mm - 8.0 * a.moment_n_mm) < 1e-9 * norm(b.moment_n_mm));
 }
 
 TEST_CASE("the printed iteration, word for word, on finite-element membranes", "[published]") {

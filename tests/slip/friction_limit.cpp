@@ -11,7 +11,6 @@
 
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/gel/gel_slide.hpp"
-#include "fingerpad/slip/grip_control.hpp"
 #include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
@@ -529,30 +528,4 @@ TEST_CASE("friction limit: names, and parameters that are refused", "[friction_l
         "FrictionLimitOptions: slide_fraction = 1.1, must be in (0, 1]");
   CHECK(with({.min_normal_n = 0}) ==
         "FrictionLimitOptions: min_normal_n = 0, must be finite and > 0");
-}
-
-TEST_CASE("friction limit: what it says feeds a grip", "[friction_limit]") {
-  FrictionLimit<double> limit;
-  GripControl<> control({}, 3);
-
-  (void)limit(pull(2), 0.1, RatioUpdate::fresh);  // learns the limit
-  CHECK(control(limit(pull(1), 0.9, RatioUpdate::fresh), 0.01).why == GripReason::follows_load);
-  // The membrane stands still and the dots agree. Without friction the force would be held; with
-  // friction it follows the load.
-  const auto slip = limit(pull(2), 0.9, RatioUpdate::unmoved);
-  const auto raised = control(slip, 0.01);
-  CHECK(raised.ok());
-  CHECK(raised.why == GripReason::follows_load);
-  CHECK(raised.force_n > 3);
-  // a ratio in percent is invalid: the force waits, and the status reports it
-  GripControl<> other({}, 3);
-  const auto percent = other(90.0, RatioUpdate::fresh, 0.01);
-  CHECK_FALSE(percent.ok());
-  CHECK(percent.force_n == 3);
-  // nor does it lead to full grip when it continues, also through the friction limit
-  for (int k = 0; k < 1000; ++k) {
-    const auto wrong = other(limit(pull(1), 90.0, RatioUpdate::fresh), 0.01);
-    CHECK_FALSE(wrong.ok());
-    CHECK(wrong.force_n <= control.options().safe_force_n);
-  }
 }
