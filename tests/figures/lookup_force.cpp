@@ -377,33 +377,6 @@ TEST_CASE("tangential force, calibrated on other scenes", "[force]") {
   }
 }
 
-TEST_CASE("tangential force after a reversal", "[force]") {
-  // The plate of `drag` turns back after step 22. The central dot then stays where the object
-  // carried it, while the force falls to zero and soon changes sign.
-  constexpr std::ptrdiff_t turned_back = 22;
-  const auto measure = ContactMeasure::depth;
-  Table table("drag, calibrated on mix, degree 1, by depth", "N", "exponent");
-  std::array<double, 2> before{}, after{};
-  for (const auto dots : {ContactDotsOf::edge, ContactDotsOf::center}) {
-    const auto fit = tangential_fit(samples_of({"mix"}, measure, dots), reference_of(measure));
-    const Samples drag = samples_of({"drag"}, measure, dots);
-    const double full = tangential_errors(fit, reference_of(measure), drag).largest;
-    const Samples out(drag.begin(), drag.begin() + turned_back);
-    const Samples back(drag.begin() + turned_back, drag.end());
-    const std::string name = dots == ContactDotsOf::edge ? "edge" : "center";
-    const auto share = [&](const Samples& part, const std::string& what) {
-      return table.add(name + ", " + what, tangential_errors(fit, reference_of(measure), part),
-                       full, rounded(fit.law.exponent, 2));
-    };
-    const std::size_t k = dots == ContactDotsOf::edge ? 0 : 1;
-    before[k] = share(out, "before");
-    after[k] = share(back, "after");
-  }
-  table.show();
-  CHECK(after[0] <= 0.03);
-  CHECK(after[1] > 3 * after[0]);
-}
-
 TEST_CASE("moment, calibrated on other scenes", "[force]") {
   // Errors are relative to the largest moment of the scene. `twist` alone does not determine an
   // exponent, because it rotates at one depth.

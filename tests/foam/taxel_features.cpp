@@ -667,44 +667,6 @@ TEST_CASE("taxel features: laws", "[taxel_features]") {
     }
   });
 
-  rc::prop("an array that is rotated over is felt rotated over", [] {
-    const auto recording = any_recording(3, 4, 60);
-    const Features features(3, 4, any_options());
-    const Features across(4, 3, features.options());
-    Recording transposed;
-    for (const Array& array : recording) {
-      Array t(4, 3);
-      for (Index i = 0; i < 3; ++i) {
-        for (Index j = 0; j < 4; ++j) {
-          t(j, i) = array(i, j);
-        }
-      }
-      transposed.push_back(t);
-    }
-    const auto plain = features_of(features, recording);
-    const auto rotated = features_of(across, transposed);
-    for (std::size_t n = 0; n < plain.size(); ++n) {
-      RC_ASSERT(plain[n].status == rotated[n].status);
-      // among equal taxels another may be the first
-      RC_ASSERT(std::fabs(plain[n].deviation - rotated[n].deviation) <= 1e-9 * plain[n].deviation);
-      RC_ASSERT(!plain[n].is_pressed() ||
-                std::fabs(plain[n].center_x_mm - rotated[n].center_y_mm) < 1e-12);
-      RC_ASSERT(!plain[n].is_pressed() ||
-                std::fabs(plain[n].center_y_mm - rotated[n].center_x_mm) < 1e-12);
-    }
-  });
-
-  rc::prop("when the recording was taken does not matter", [] {
-    const auto recording = any_recording(2, 3, 60);
-    const Features features(2, 3, any_options());
-    const double later = static_cast<double>(test::whole(-1000000, 1000000));
-    auto finger = features;
-    const auto plain = features_of(features, recording);
-    for (std::size_t n = 0; n < plain.size(); ++n) {
-      same_vibration(plain[n], finger(recording[n], static_cast<double>(n) + later));
-    }
-  });
-
   rc::prop("a taxel that cannot be read changes nothing in what the others say", [] {
     const auto recording = any_recording(3, 3, 60);
     const auto o = any_options();
@@ -721,18 +683,6 @@ TEST_CASE("taxel features: laws", "[taxel_features]") {
       same_vibration(told[n], found[n]);
       RC_ASSERT(told[n].sum == found[n].sum);
       RC_ASSERT(told[n].location != static_cast<Index>(broken));
-    }
-  });
-
-  rc::prop("more noise to be expected never makes a vibration", [] {
-    const auto recording = any_recording(3, 3, 60);
-    auto o = any_options();
-    const auto few = features_of(Features(3, 3, o), recording);
-    o.noise *= test::uniform(1, 3);
-    const auto fewer = features_of(Features(3, 3, o), recording);
-    for (std::size_t n = 0; n < few.size(); ++n) {
-      RC_ASSERT(fewer[n].location == FingerSample<double>::no_location ||
-                fewer[n].location == few[n].location);
     }
   });
 }

@@ -270,16 +270,6 @@ TEST_CASE("curvature: pixels that are higher than wide see the same membrane") {
   CHECK(std::count(ring.begin(), ring.end(), detail::RingOffset{20, 0}) == 1);
 }
 
-TEST_CASE("curvature: images smaller than the ring have no curvature") {
-  for (const Index size : {1, 2, 7}) {
-    const Image<float> depth(size, size + 1, 3.0F);
-    for (const Index radius : {6, 30, 1000}) {
-      const Image<float> k = curvatures<Mean::clamped>(depth, static_cast<double>(radius));
-      CHECK(std::all_of(k.cells.begin(), k.cells.end(), [](float x) { return std::isnan(x); }));
-    }
-  }
-}
-
 TEST_CASE("curvature: other sizes are refused and nothing is written") {
   CurvatureMap<> map(plate, 9, 10, 2);
   const Image<float> depth(9, 10, 1.0F), narrow(9, 9, 1.0F);
@@ -574,23 +564,6 @@ double map_error(const CameraType& camera) {
 }
 
 }  // namespace
-
-TEMPLATE_TEST_CASE("a section's curvature follows 50 digits", "[curvature]", float, double) {
-  using S = TestType;
-  rc::prop("whatever depth, slope and curvature", [] {
-    const S radius = static_cast<S>(test::whole(0, 1) == 0 ? 0.768 : 1.92);
-    const double r = static_cast<double>(radius);
-    const double center = test::uniform(5, 13), rise = r * test::uniform(-1.5, 1.5);
-    const double bend = any_curvature() * r * r / 2;
-    const S before = static_cast<S>(center - rise - bend);
-    const S middle = static_cast<S>(center);
-    const S after = static_cast<S>(center + rise - bend);
-    const Digits50 exact =
-        section_curvature(Digits50(radius), Digits50(before), Digits50(middle), Digits50(after));
-    const Digits50 error = Digits50(section_curvature(radius, before, middle, after)) - exact;
-    RC_ASSERT(std::abs(static_cast<double>(error)) <= bound_per_mm<S> / 100);
-  });
-}
 
 TEMPLATE_TEST_CASE("maps of curvature follow 50 digits", "[curvature][figures]", float, double) {
   using S = TestType;

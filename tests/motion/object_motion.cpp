@@ -164,25 +164,6 @@ TEST_CASE("object motion: statuses") {
   }
 }
 
-TEST_CASE("object motion: dots twice as far apart tell the rotation twice as well") {
-  const auto sd_of = [](double pitch_mm) {
-    test::Image<Point3<double>> dots(9, 9), moved(9, 9);
-    for (Index i = 0; i < 9; ++i) {
-      for (Index j = 0; j < 9; ++j) {
-        dots(i, j) = {pitch_mm * static_cast<double>(j), pitch_mm * static_cast<double>(i), 10};
-        moved(i, j) = dots(i, j) + Point3<double>{0.2, 0.1, 0};
-      }
-    }
-    const test::Image<std::uint8_t> all(9, 9, 1), none(9, 9, 0);
-    ObjectMotion<> motion(9, 9);
-    (void)motion(dots, all, none, 0.025);
-    return motion(moved, all, none, 0.025).rotation_sd_rad;
-  };
-  CHECK(sd_of(1) > 0);
-  CHECK(sd_of(0.5) == Approx(2 * sd_of(1)));
-  CHECK(sd_of(1) == Approx(2 * sd_of(2)));
-}
-
 TEST_CASE("object motion: standard deviations cover the error of a roll, and are no wider",
           "[noise]") {
   const test::RollingBall ball{.rows = 11, .cols = 31, .patch_mm = 5};

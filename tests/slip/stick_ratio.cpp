@@ -1206,21 +1206,6 @@ TEST_CASE("a dot that begins to slip never raises the ratio", "[stick_ratio][law
   });
 }
 
-TEST_CASE("identical frames say nothing new", "[stick_ratio][law]") {
-  rc::prop("the ratio stands", [] {
-    const Recording recording = any_recording(test::uniform(0, 0.6));
-    StickRatio<> stick(recording.rows(), recording.cols());
-    for (std::size_t k = 0; k < recording.size(); ++k) {
-      const auto first = stick(recording.dots[k], recording.contact[k]);
-      for (int again = 0; again < 2; ++again) {
-        const auto r = stick(recording.dots[k], recording.contact[k]);
-        RC_ASSERT((!r.updated() || r.reference_age > again + 1));  // never against itself
-        RC_ASSERT((r.updated() || test::same_bits(r.stick_ratio, first.stick_ratio)));
-      }
-    }
-  });
-}
-
 TEST_CASE("stick ratio: nothing is worse than a status", "[stick_ratio][law]") {
   rc::prop("whatever the dots, the flags, the times and the sizes", [] {
     const Index rows = test::whole(1, 8), cols = test::whole(1, 8);
