@@ -14,11 +14,9 @@
 #include "fingerpad/gel/gel_slide.hpp"
 #include "fingerpad/image/curvature.hpp"
 #include "fingerpad/optics/orthographic_camera.hpp"
-#include "fingerpad/published/segment_equilibrium.hpp"
-#include "fingerpad/slip/stick_ratio.hpp"
 #include "support/catch.hpp"
 #include "support/every_grid.hpp"
-#include "support/pressed_pad.hpp"
+#include "support/pad.hpp"
 #include "support/traction_scenes.hpp"
 
 using namespace fingerpad;

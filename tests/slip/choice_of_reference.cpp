@@ -123,15 +123,6 @@ double denoising_gain(int sides, int diagonals) {
 
 }  // namespace
 
-TEST_CASE("noise of the dots: that of one position", "[stick]") {
-  Random random(1);
-  StickRatio<> stick(7, 7);
-  for (int t = 0; t < 40; ++t) {
-    (void)stick(jittered(pattern(7, 7), 0.1, random), Flags(7, 7));
-  }
-  CHECK(stick.noise() == Approx(0.1).epsilon(0.1));  // of the latest 32
-}
-
 TEST_CASE("choice of U: the error hardly depends on it", "[stick]") {
   for (const double noise_px : {0.06, 0.14}) {
     const Recording recording = record({.noise_px = noise_px});
