@@ -7,16 +7,14 @@
 
 using Estimator = fingerpad::DepthEstimator<>;
 
+int main() {
 #ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
   const auto depth = [](Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
     cv::Mat_<float> depth_mm(image.size());
     return estimator(image, image, depth_mm);
   };
   (void)depth;
-}
 #else
-static void good_or_bad() {
   const auto depth = [](Estimator& estimator, const cv::Mat_<cv::Vec3b>& image) {
     cv::Mat_<float> depth_mm(image.size());
     const auto red = fingerpad::channel<unsigned char>(image, 2);
@@ -24,8 +22,5 @@ static void good_or_bad() {
     return estimator(red, green, depth_mm);
   };
   (void)depth;
-}
 #endif
-int main() {
-  good_or_bad();
 }

@@ -4,15 +4,10 @@
 // message: (satisfaction of|does not satisfy) 'scalar
 #include "fingerpad/optics/camera.hpp"
 
-#ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
-  (void)fingerpad::Camera<int>();
-}
-#else
-static void good_or_bad() {
-  (void)fingerpad::Camera<float>();
-}
-#endif
 int main() {
-  good_or_bad();
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+  (void)fingerpad::Camera<int>();
+#else
+  (void)fingerpad::Camera<float>();
+#endif
 }

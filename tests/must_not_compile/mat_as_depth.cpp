@@ -8,16 +8,11 @@
 fingerpad::ContactRegion<> contact_region(fingerpad::Camera<>(), 480, 640);
 cv::Mat depth_map(480, 640, CV_32F), mask(480, 640, CV_8U);
 
+int main() {
 #ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
   (void)contact_region(depth_map, mask);
-}
 #else
-static void good_or_bad() {
   cv::Mat_<unsigned char> to(mask);
   (void)contact_region(cv::Mat_<float>(depth_map), to);
-}
 #endif
-int main() {
-  good_or_bad();
 }

@@ -8,15 +8,10 @@
 
 cv::Mat depth_mm(480, 640, CV_32F);
 
-#ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
-  (void)fingerpad::rows(depth_mm);
-}
-#else
-static void good_or_bad() {
-  (void)depth_mm.rows;
-}
-#endif
 int main() {
-  good_or_bad();
+#ifdef FINGERPAD_MUST_NOT_COMPILE
+  (void)fingerpad::rows(depth_mm);
+#else
+  (void)depth_mm.rows;
+#endif
 }

@@ -10,16 +10,11 @@ fingerpad::StickRatio<> stick(9, 9);
 std::vector<fingerpad::Point2<double>> dots_px(81);
 std::vector<unsigned char> contact(81);
 
+int main() {
 #ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
   (void)stick(dots_px, contact);
-}
 #else
-static void good_or_bad() {
   using fingerpad::grid_of;
   (void)stick(grid_of(dots_px, 9, 9), grid_of(contact, 9, 9));
-}
 #endif
-int main() {
-  good_or_bad();
 }

@@ -14,16 +14,11 @@ static void find_in(auto& to) {
   (void)contact(depths, to);
 }
 
+int main() {
 #ifdef FINGERPAD_MUST_NOT_COMPILE
-static void good_or_bad() {
   const auto& read_only = mask;
   find_in(read_only);
-}
 #else
-static void good_or_bad() {
   find_in(mask);
-}
 #endif
-int main() {
-  good_or_bad();
 }
