@@ -477,16 +477,6 @@ void check_searches() {
   }
 }
 
-template <std::size_t Fingers, class Change>
-History<Fingers> changed(History<Fingers> history, const Change& change) {
-  for (auto& hand : history) {
-    for (std::size_t f = 0; f < Fingers; ++f) {
-      change(hand[f], f);
-    }
-  }
-  return history;
-}
-
 }  // namespace
 
 TEST_CASE("pre-slip: the newest sample finds what the stack as printed does", "[preslip][law]") {
@@ -495,8 +485,8 @@ TEST_CASE("pre-slip: the newest sample finds what the stack as printed does", "[
   rc::prop("on three fingers", [] { check_searches<3>(); });
 }
 
-TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
-  rc::prop("the order of the fingers", [] {
+TEST_CASE("pre-slip: the order of the fingers does not matter", "[preslip][law]") {
+  rc::prop("for any history", [] {
     const auto history = any_history<3>();
     const Options options = any_options();
     std::array<std::size_t, 3> order{0, 1, 2};
@@ -512,40 +502,6 @@ TEST_CASE("pre-slip: what does not matter", "[preslip][law]") {
     }
     for (const PreslipRule rule : all_rules) {
       RC_ASSERT(run(rule, history, options) == run(rule, permuted, options));
-    }
-  });
-  rc::prop("where the array is, and which of its axes is which", [] {
-    const auto history = any_history<2>();
-    const Options options = any_options();
-    const auto moved = [&](double x_mm, double y_mm) {
-      return changed(history, [=](auto& s, std::size_t f) {
-        s.center_x_mm += f == 0 ? x_mm : y_mm;
-        s.center_y_mm += f == 0 ? y_mm : -x_mm;
-      });
-    };
-    // exact in binary, so no difference is rounded
-    const auto any = moved(static_cast<double>(test::whole(-1000, 1000)) / 64,
-                           static_cast<double>(test::whole(-1000, 1000)) / 64);
-    const auto rotated =
-        changed(history, [](auto& s, std::size_t) { std::swap(s.center_x_mm, s.center_y_mm); });
-    for (const PreslipRule rule : all_rules) {
-      const Results results = run(rule, history, options);
-      RC_ASSERT(results == run(rule, rotated, options));
-      RC_ASSERT(results == run(rule, any, options));
-    }
-  });
-  rc::prop("the unit of length", [] {
-    const auto history = any_history<2>();
-    Options options = any_options();
-    const double unit = std::ldexp(1.0, static_cast<int>(test::whole(-40, 40)));
-    const auto scaled = changed(history, [&](auto& s, std::size_t) {
-      s.center_x_mm *= unit;
-      s.center_y_mm *= unit;
-    });
-    Options scaled_options = options;
-    scaled_options.centroid_tolerance_mm *= unit;
-    for (const PreslipRule rule : all_rules) {
-      RC_ASSERT(run(rule, history, options) == run(rule, scaled, scaled_options));
     }
   });
 }

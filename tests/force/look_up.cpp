@@ -592,20 +592,6 @@ TEST_CASE("shear: a round pad looks the same from every side", "[shear][law]") {
   });
 }
 
-TEST_CASE("shear: the unit of the measure does not matter", "[shear][law]") {
-  rc::prop("if the reference is in it, too", [] {
-    auto map = normalised(any_map());
-    const double measure = any_measure(), theta = any_rotation();
-    const auto d = any_shift();
-    const auto a = Shear(map)(measure, d, theta);
-    const double unit = std::ldexp(1.0, static_cast<int>(test::whole(-40, 40)));
-    map.reference *= unit;
-    const auto b = Shear(map)(unit * measure, d, theta);
-    RC_ASSERT(a.tangential_force_n.x == b.tangential_force_n.x);
-    RC_ASSERT(a.moment_n_mm == b.moment_n_mm);
-  });
-}
-
 TEMPLATE_TEST_CASE("shear: whatever is measured, the answer says what it is worth",
                    "[shear][law]",
                    double,

@@ -659,28 +659,6 @@ TEST_CASE("traction is linear in pressure and mu t together", "[traction][law]")
   });
 }
 
-TEST_CASE("traction in other units of length", "[traction][law]") {
-  rc::prop("loads stay, forces go with the square, moments with the cube", [] {
-    const Pad pad = Pad::any();
-    const Seen before = look(pad);
-    RC_PRE(before.result.has_force());
-    const double f = test::log_uniform(0.01, 100);
-    const auto larger = [&](const Vector& x) { return f * x; };
-    Pad other = pad;
-    other.free = mapped(pad.free, larger);
-    other.dots = mapped(pad.dots, larger);
-    other.mu_t *= f;
-    const Seen after = look(other);
-    const double small = 1e-11 * typical_load(pad);
-    assert_same(
-        before, after, small, [](const Vector& q) { return q; }, same_place);
-    RC_ASSERT(distance(after.result.force_n, f * f * before.result.force_n) <=
-              1000 * f * f * small);
-    RC_ASSERT(distance(after.result.moment_n_mm, f * f * f * before.result.moment_n_mm) <=
-              1e5 * f * f * f * small);
-  });
-}
-
 TEST_CASE("the balanced mu t goes with the pressure", "[traction][law]") {
   rc::prop("and with it all loads", [] {
     const Pad pad = Pad::any();

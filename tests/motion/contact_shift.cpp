@@ -519,18 +519,6 @@ TEMPLATE_TEST_CASE("contact shift: the axes are a matter of choice",
     RC_ASSERT(b.rotation_rad == -a.rotation_rad);
     RC_ASSERT(b.residual_rms == a.residual_rms);
   });
-  rc::prop("in another unit the angle is the same", [] {
-    const Scene s = any_scene();
-    const double unit = std::ldexp(1.0, static_cast<int>(test::whole(-10, 10)));
-    const auto scale = [=](const Point2<double>& p) {
-      return Point2<double>{unit * p.x, unit * p.y};
-    };
-    const auto a = TestType::of(s);
-    const auto b = TestType::of({mapped(s.free, scale), mapped(s.dots, scale), s.contact});
-    RC_ASSERT(b.rotation_rad == a.rotation_rad);
-    RC_ASSERT(b.displacement.x == unit * a.displacement.x);
-    RC_ASSERT(b.residual_rms == unit * a.residual_rms);
-  });
 }
 
 TEST_CASE("contact shift: no rigid motion is nearer to the dots", "[contact_shift][law]") {

@@ -659,22 +659,6 @@ TEST_CASE("stick ratio: an object that carries its dots by a pitch between two f
   CHECK_FALSE(at_rest.far_apart);
 }
 
-TEST_CASE("stick ratio, bad input: the unit changes within a contact") {
-  for (const double unit : {0.08, 12.5}) {
-    CAPTURE(unit);
-    Follower f;
-    (void)f(shifted(0));
-    CHECK(f(shifted(3)).updated());
-    auto dots = shifted(6);
-    for (auto& p : dots.cells) {
-      p = unit * p;
-    }
-    const auto r = f(dots);
-    CHECK(r.status == StickStatus::not_in_order);
-    CHECK(r.stick_ratio == 1);  // the last answer
-  }
-}
-
 TEST_CASE("stick ratio: the noise is at least a 2000th of a pitch") {
   const auto status = [](double share) {
     Follower f({.noise = 1e-9});
