@@ -212,14 +212,40 @@ TEST_CASE("wrench: by default it is uncertain by the largest press so far", "[wr
   CHECK(rim.fit(0).ok());
 }
 
+TEST_CASE("wrench: the answer does not depend on where the fit begins", "[wrench]") {
+  // a printed grid that ends a quarter of the radius from the rim, and dots to .12 px
+  for (const RimScene& s : rim_scenes()) {
+    const auto options = SeenRim::options_of(s, true);
+    SeenRim rim(s, options, 0.12, 7, 1), begun_anew(s, options, 0.12, 7, 1);
+    for (std::size_t k = 0; k < s.frames.size(); ++k) {
+      rim.show(k);
+      std::vector<Mark> marks = rim.marks;
+      std::erase_if(marks, [&](const Mark& m) { return m.arc_mm < 0.27 * s.cap.base_radius_mm; });
+      const double pressure_mpa = s.frames[k].pressure_mpa;
+      REQUIRE(begun_anew.wrench.begin(s.frames[0].pressure_mpa));
+      const auto one = rim.wrench(marks, pressure_mpa);
+      const auto other = begun_anew.wrench(marks, pressure_mpa);
+      CAPTURE(s.name, k);
+      REQUIRE(one.has_force());
+      REQUIRE(other.has_force());
+      const auto a = parts(one), b = parts(other);
+      for (Eigen::Index i = 0; i < 6; ++i) {
+        const auto part = static_cast<std::size_t>(i);
+        CHECK(std::fabs(a[part] - b[part]) < std::sqrt(one.covariance(i, i)));
+      }
+    }
+  }
+}
+
 TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   int within = 0, all = 0;
   double worst = 0;
   for (const RimScene& s : rim_scenes()) {
     auto options = SeenRim::options_of(s, true);
     options.pressure_sd_share = 1;
-    SeenRim rim(s, options, 0.02, 5);
-    for (std::size_t k = 1; k < s.frames.size(); ++k) {
+    for (std::size_t run = 0; run < 8 * (s.frames.size() - 1); ++run) {
+      const std::size_t k = 1 + run % (s.frames.size() - 1);
+      SeenRim rim(s, options, 0.02, run);
       rim.show(k);
       const auto result = rim.wrench(rim.marks, s.frames[0].pressure_mpa);  // all that is known
       CAPTURE(s.name, k, name_of(result.status));
@@ -227,6 +253,7 @@ TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
       const double off = std::fabs(result.pressure_mpa - s.frames[k].pressure_mpa);
       worst = (std::max)(worst, off / s.frames[k].pressure_mpa);
       within += off < 2 * result.pressure_sd_mpa ? 1 : 0;
+      CHECK(off < 5 * result.pressure_sd_mpa);
       const double off_n = std::fabs(result.force_n.z - s.frames[k].load[2]);
       within += off_n < 2 * std::sqrt(result.covariance(2, 2)) ? 1 : 0;
       all += 2;
@@ -234,7 +261,7 @@ TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   }
   CAPTURE(within, all, worst);
   CHECK(within >= 0.9 * all);
-  CHECK(worst < 0.06);
+  CHECK(worst < 0.15);
 }
 
 namespace {

@@ -120,10 +120,13 @@ class Wrench {
     parameters_.assign(n, 0.0);
     centre_ = at_slopes_ = before_ = parameters_;
     for (std::size_t k = 0; k + 1 < n; ++k) {
-      const bool offset = k >= 3 * annulus_.terms();
+      const bool is_offset = k >= 3 * annulus_.terms();
       const auto harmonic = static_cast<double>((k % annulus_.terms() + 1) / 2);
-      // harmonics of a slope fall as those of a corner; an offset is at most some thickness
-      weight_.push_back(1 / square(offset ? 0.3 : 0.3 / std::pow((std::max)(1.0, harmonic), 1.5)));
+      // harmonics of a slope fall as those of a corner; a sheet that bends over some thickness is
+      // set off by that times its slope
+      const double bend_mm = 0.3, slope = 0.3 / std::pow((std::max)(1.0, harmonic), 1.5);
+      const double offset_mm = harmonic > 0 ? bend_mm * slope : bend_mm;
+      weight_.push_back(1 / square(is_offset ? offset_mm : slope));
     }
     weight_.push_back(0);
     normal_.resize(count, static_cast<Eigen::Index>(width));
@@ -199,9 +202,9 @@ class Wrench {
     centre_.back() = load;
     parameters_.back() = load;
     weight_.back() = 1 / square((std::max)(options_.pressure_sd_share, 1e-6) * load);
-    if (!fit()) {
+    if (!fit(0.1, 24)) {
       restart();
-      if (!fit()) {
+      if (!fit(0.05, 48)) {
         restart();
         result.status = WrenchStatus::not_solved;
         return result;
@@ -304,11 +307,12 @@ class Wrench {
   }
 
   /// Gauss and Newton's method with Huber's weights. The slopes, of the last frame at first, are
-  /// kept until the parameters are far from theirs, or the steps do not halve.
-  bool fit() {
+  /// kept until the parameters are far from theirs, or the steps do not halve. A step changes no
+  /// parameter by more than `longest`, and the load by no larger share.
+  bool fit(double longest, int most_steps) {
     double step = 1;
     bool is_stale = !has_slopes_;
-    for (int iteration = 0; iteration < 24; ++iteration) {
+    for (int iteration = 0; iteration < most_steps; ++iteration) {
       if (is_stale) {
         tangent_.march(parameters_);
         at_slopes_ = parameters_;
@@ -322,7 +326,8 @@ class Wrench {
       if (!(largest < 100)) {
         return false;
       }
-      const double scale = (std::min)(1.0, 0.1 / (std::max)(largest, 1e-9));
+      const double rise = std::fabs(gradient_[gradient_.size() - 1]) / parameters_.back();
+      const double scale = (std::min)(1.0, longest / (std::max)({largest, rise, 1e-9}));
       for (std::size_t k = 0; k < parameters_.size(); ++k) {
         parameters_[k] += scale * gradient_[static_cast<Eigen::Index>(k)];
         far = (std::max)(far, std::fabs(parameters_[k] - at_slopes_[k]));
