@@ -13,7 +13,11 @@ import os
 import pathlib
 import sys
 
-import matplotlib
+try:
+    import matplotlib
+except ImportError:
+    sys.exit("plot.py draws with matplotlib, which this Python does not have: "
+             "pip install matplotlib, or apt install python3-matplotlib and /usr/bin/python3 plot.py")
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
@@ -41,6 +45,7 @@ def known(table, *names):
 def chart(title, panels, table, to, doubt=None, limits=None):
     """Panels of (label, [(name, values, sd or None, truth or None)]), one above the other."""
     x = table["frame"]
+    doubted = [f for f, status in zip(x, table.get(doubt, [])) if status not in ("ok", "no contact", "")]
     figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False,
                                 figsize=(8, 0.8 + 1.7 * len(panels)), layout="constrained")
     for ax, (label, curves) in zip(axes[:, 0], panels):
@@ -51,15 +56,14 @@ def chart(title, panels, table, to, doubt=None, limits=None):
                                 [a + 2 * s for a, s in zip(y, sd)], color=line.get_color(), alpha=0.2, lw=0)
             if truth:
                 ax.plot(*truth, "--", color=line.get_color(), lw=1)
-        for frame, status in zip(x, table.get(doubt, [])):
-            if status not in ("ok", "no contact", ""):
-                ax.axvspan(frame - 0.5, frame + 0.5, color="0.85", lw=0, zorder=0)
+        for frame in doubted:
+            ax.axvspan(frame - 0.5, frame + 0.5, color="0.85", lw=0, zorder=0)
         ax.set_ylabel(label)
         if len(curves) > 1:
             ax.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     axes[-1, 0].set_xlabel("frame")
     axes[0, 0].set_ylim(limits)
-    figure.suptitle(title, fontsize=10)
+    figure.suptitle(title + ("; grey: in doubt" if doubted else ""), fontsize=10)
     figure.savefig(to)
     plt.close(figure)
 
@@ -79,7 +83,7 @@ def pad(table, truth, pictures):
             moved[axis].append(at - first.get((number, axis), math.nan))
     if known(table, "contact_area_mm2"):
         degrees = {axis: scaled(table[f"rotation_{axis}_rad"], 180 / math.pi) for axis in "xyz"}
-        chart("Contact, and motion of the object since it was begun; lines end where it slides or is lost",
+        chart("Contact, and motion of the object since it began; lines end where it slides",
               [("area, mm$^2$", [("", table["contact_area_mm2"], table["contact_area_sd_mm2"], None)]),
                ("depth, mm", [("", table["contact_depth_mm"], None, None)]),
                ("moved, mm", [(a, moved[a], table["object_sd_mm"], None) for a in "xyz"]),
@@ -122,7 +126,7 @@ def foam(table, pictures):
     fingers = sorted({name.split("_")[0] + "_" for name in table if name.startswith("finger")}) or [""]
     alarms = [f for f, alarm in zip(table["frame"], table["preslip"]) if alarm == 1]
     shown = lambda column: [(f.strip("_"), table[f + column], None, None) for f in fingers]
-    chart("Foam fingers: " + (f"first warning in frame {alarms[0]:.0f} (1 below)" if alarms else "no warning"),
+    chart("Foam fingers: " + (f"first warning in frame {alarms[0]:.0f} (lowest panel)" if alarms else "no warning"),
           [("force, N", shown("force_n")) if fingers[0] + "force_n" in table else ("sum", shown("sum")),
            ("centroid y, mm", shown("center_y_mm")),
            ("vibration, Hz", shown("frequency_hz")), ("warning", [("", table["preslip"], None, None)])],
@@ -170,7 +174,7 @@ def calibrations(folder):
                                               layout="constrained")
         for y, mark, name in ((measured, ".", rows[0][1]), (fitted, "k_", rows[0][2])):
             above.plot(x, y, mark, label=name.removeprefix(y_name).strip())
-        above.set(ylabel=y_name, title=file.stem.replace("_", " ") + ": measured and fitted")
+        above.set(ylabel=y_name, title=file.stem.replace("_", " ") + ": measured and fitted; the difference should scatter about 0")
         above.legend()
         below.plot(x, [m - f for m, f in zip(measured, fitted)], ".", ms=4)
         below.set(xlabel=rows[0][0], ylabel="difference")

@@ -50,7 +50,7 @@ class Region {
 
 void bind_contact(py::module_& module) {
   bind_options<ContactTest>(module, "ContactTest",
-                            "The test for contact; see contact/contact_region.hpp.")
+                            "The test for contact; see docs/contact/contact_region.md.")
       .def_readwrite("threshold_per_mm", &ContactTest::threshold_per_mm)
       .def_readwrite("free_apex_mm", &ContactTest::free_apex_mm)
       .def_readwrite("min_region_px", &ContactTest::min_region_px)
@@ -71,7 +71,7 @@ void bind_contact(py::module_& module) {
       .def_property_readonly(
           "center_mm", [](const ContactResult& contact) { return as_tuple(contact.center_mm); });
   py::class_<Region>(module, "ContactRegion",
-                     "Computes the contact region; see contact/contact_region.hpp.")
+                     "Computes the contact region; see docs/contact/contact_region.md.")
       .def(py::init<const fingerpad::Camera<double>&, const Count&, const Count&,
                     const ContactTest&>(),
            py::arg("camera"), py::arg("rows"), py::arg("cols"), py::arg("test") = ContactTest())

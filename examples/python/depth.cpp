@@ -86,7 +86,7 @@ class Estimator {
 }  // namespace
 
 void bind_depth(py::module_& module) {
-  bind_options<Camera<double>>(module, "Camera", "Camera and plate; see optics/camera.hpp.")
+  bind_options<Camera<double>>(module, "Camera", "Camera and plate; see docs/optics/optics.md.")
       .def_readwrite("plate_distance_mm", &Camera<double>::plate_distance_mm)
       .def_readwrite("refractive_index", &Camera<double>::refractive_index)
       .def_readwrite("center_x_px", &Camera<double>::center_x_px)
@@ -97,7 +97,7 @@ void bind_depth(py::module_& module) {
       .def_readwrite("pixel_aspect", &Camera<double>::pixel_aspect)
       .def_readwrite("distortion_k1", &Camera<double>::distortion_k1)
       .def_readwrite("distortion_k2", &Camera<double>::distortion_k2);
-  bind_options<Absorption<double>>(module, "Absorption", "The fluid; see depth/absorption.hpp.")
+  bind_options<Absorption<double>>(module, "Absorption", "The fluid; see docs/depth/depth.md.")
       .def_readwrite("c_red_per_mm", &Absorption<double>::c_red_per_mm)
       .def_readwrite("c_green_per_mm", &Absorption<double>::c_green_per_mm)
       .def_readwrite("kappa", &Absorption<double>::kappa)
@@ -122,8 +122,7 @@ void bind_depth(py::module_& module) {
             return result.count[static_cast<std::size_t>(status)];
           },
           py::arg("status"), "number of pixels of the pad with this status");
-  py::class_<Reference>(module, "DepthReference",
-                        "Light of the free pad; see depth/depth_reference.hpp.")
+  py::class_<Reference>(module, "DepthReference", "Light of the free pad; see docs/depth/depth.md.")
       .def_readonly("residual_rms", &Reference::residual_rms)
       .def_readonly("pixels_used", &Reference::pixels_used);
   module.def("fit_reference", &fit, py::arg("camera"), py::arg("fluid"), py::arg("red"),
@@ -131,7 +130,8 @@ void bind_depth(py::module_& module) {
              "The reference from a frame of the free pad.\n\n"
              "red, green: (rows, cols), uint8, uint16, float32 or float64.\n"
              "depth_mm: (rows, cols), float32 or float64, along each pixel's ray; NaN outside.");
-  py::class_<Estimator>(module, "DepthEstimator", "Depth from red and green; see depth/depth.hpp.")
+  py::class_<Estimator>(module, "DepthEstimator",
+                        "Depth from red and green; see docs/depth/depth.md.")
       .def(py::init<const Camera<double>&, const Absorption<double>&, const Reference&,
                     const Count&>(),
            py::arg("camera"), py::arg("fluid"), py::arg("reference"),

@@ -126,7 +126,7 @@ std::unique_ptr<Fingertip> make(const fingerpad::Camera<double>& camera,
 void bind_motion_result(py::module_& module) {
   using Motion = fingerpad::ObjectMotionResult<double>;
   py::class_<Motion>(module, "ObjectMotionResult",
-                     "Motion of the object; see motion/object_motion.hpp.")
+                     "Motion of the object; see docs/motion/object_motion.md.")
       .def_property_readonly("ok", &Motion::ok)
       .def_property_readonly("status", [](const Motion& r) { return name_of(r.status); })
       .def_property_readonly("has_pose", &Motion::has_pose)
@@ -165,7 +165,8 @@ void bind_slip_result(py::module_& module) {
       .value("friction", SlipEvidence::friction)
       .value("both", SlipEvidence::both);
   using Slip = fingerpad::SlipResult<double>;
-  py::class_<Slip>(module, "SlipResult", "Slip from dots and forces; see slip/friction_limit.hpp.")
+  py::class_<Slip>(module, "SlipResult",
+                   "Slip from dots and forces; see docs/slip/spatial_stick_ratio.md.")
       .def_property_readonly("ok", &Slip::ok)
       .def_property_readonly("status", [](const Slip& r) { return name_of(r.status); })
       .def_readonly("evidence", &Slip::evidence)
@@ -186,7 +187,7 @@ void bind_slip_result(py::module_& module) {
 void bind_shift_dots_and_area(py::module_& module) {
   using Shift = fingerpad::ShiftResult<double>;
   py::class_<Shift>(module, "ShiftResult",
-                    "Displacement and rotation of a contact; see motion/contact_shift.hpp.")
+                    "Displacement and rotation of a contact; see docs/force/shear.md.")
       .def_property_readonly("ok", &Shift::ok)
       .def_property_readonly("status", [](const Shift& r) { return name_of(r.status); })
       .def_readonly("dots", &Shift::dots, "that took part")
@@ -197,7 +198,7 @@ void bind_shift_dots_and_area(py::module_& module) {
       .def_readonly("residual_rms", &Shift::residual_rms);
   using Dots = fingerpad::DotFollowerResult;
   py::class_<Dots>(module, "DotFollowerResult",
-                   "Printed dots found in a frame; see dots/dot_follower.hpp.")
+                   "Printed dots found in a frame; see docs/dots/dot_follower.md.")
       .def_property_readonly("ok", &Dots::ok)
       .def_property_readonly("status", [](const Dots& r) { return name_of(r.status); })
       .def_readonly("found", &Dots::found)
@@ -205,7 +206,7 @@ void bind_shift_dots_and_area(py::module_& module) {
   using FlatArea = fingerpad::FlatAreaResult<double>;
   py::class_<FlatArea>(
       module, "FlatAreaResult",
-      "Flat plate that presses with the same force; see contact/equivalent_flat_area.hpp.")
+      "Flat plate that presses with the same force; see docs/force/normal_force.md.")
       .def_property_readonly("ok", &FlatArea::ok)
       .def_readonly("area_mm2", &FlatArea::area_mm2)
       .def_readonly("variance_mm4", &FlatArea::variance_mm4);
@@ -214,7 +215,7 @@ void bind_shift_dots_and_area(py::module_& module) {
 void bind_result(py::module_& module) {
   using Result = FingertipResult;
   py::class_<Result>(module, "FingertipResult",
-                     "Result of a frame; see pipeline/fingertip_options.hpp.")
+                     "Result of a frame; see docs/pipeline/fingertip.md.")
       .def_property_readonly("ok", &Result::ok)
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
       .def_readonly("depth_in_doubt", &Result::depth_in_doubt,
@@ -257,7 +258,7 @@ void bind_fingertip(py::module_& module) {
   bind_result(module);
   py::class_<Fingertip>(
       module, "Fingertip",
-      "Computes the touch from frames, dots and pressure; see pipeline/fingertip.hpp.\n"
+      "Computes the touch from frames, dots and pressure; see docs/pipeline/fingertip.md.\n"
       "It stores past frames: use one object for each pad.")
       .def(py::init(&make), py::arg("camera"), py::arg("fluid"), py::arg("reference"),
            py::arg("free_dots_mm"), py::arg("contact") = fingerpad::ContactTest(),

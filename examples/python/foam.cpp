@@ -45,19 +45,20 @@ Felt feel(Hand& hand, const Array& readings, const Number& time_s) {
 }  // namespace
 
 void bind_foam(py::module_& module) {
-  bind_options<Taxels>(module, "TaxelOptions", "Evaluation of the taxels; see foam/taxels.hpp.")
+  bind_options<Taxels>(module, "TaxelOptions",
+                       "Evaluation of the taxels; see docs/foam/preslip.md.")
       .def_readwrite("pitch_mm", &Taxels::pitch_mm)
       .def_readwrite("window", &Taxels::window)
       .def_readwrite("sample_period_s", &Taxels::sample_period_s)
       .def_readwrite("noise", &Taxels::noise)
       .def_readwrite("noise_factor", &Taxels::noise_factor)
       .def_readwrite("saturated_at", &Taxels::saturated_at);
-  py::enum_<PreslipRule>(module, "PreslipRule", "Which rule; see foam/preslip.hpp.")
+  py::enum_<PreslipRule>(module, "PreslipRule", "Which rule; see docs/foam/preslip.md.")
       .value("grasp_lift", PreslipRule::grasp_lift)
       .value("grasp_optimise", PreslipRule::grasp_optimise)
       .value("printed_grasp_optimise", PreslipRule::printed_grasp_optimise);
   bind_options<Rules>(module, "PreslipOptions",
-                      "Options of the pre-slip rules; see foam/preslip.hpp.")
+                      "Options of the pre-slip rules; see docs/foam/preslip.md.")
       .def_readwrite("rule", &Rules::rule)
       .def_readwrite("history", &Rules::history)
       .def_readwrite("min_waves", &Rules::min_waves)
@@ -81,9 +82,10 @@ void bind_foam(py::module_& module) {
           "ok", [](const Felt& felt) { return felt.status != PreslipStatus::cannot_tell; })
       .def_readonly("status", &Felt::status)
       .def_readonly("fingers", &Felt::fingers);
-  py::class_<Hand>(module, "FoamHand",
-                   "Two foam fingers; see pipeline/foam_hand.hpp. It stores past samples: use one\n"
-                   "object for each hand and thread.")
+  py::class_<Hand>(
+      module, "FoamHand",
+      "Two foam fingers; see docs/pipeline/foam_hand.md. It stores past samples: use one\n"
+      "object for each hand and thread.")
       .def(py::init(&make_hand), py::arg("rows"), py::arg("cols"), py::arg("taxels") = Taxels(),
            py::arg("rules") = Rules())
       .def("__call__", &feel, py::arg("readings"), py::arg("time_s"),

@@ -136,14 +136,15 @@ Point2<double> displacement_of(const Array& given) {
 }
 
 void bind_results(py::module_& module) {
-  py::class_<ForceResult>(module, "ForceResult", "A normal force; force/look_up.hpp.")
+  py::class_<ForceResult>(module, "ForceResult", "A normal force; see docs/force/normal_force.md.")
       .def_property_readonly("ok", &ForceResult::ok, "whether the calibration vouches for it")
       .def_property_readonly("status", [](const ForceResult& r) { return name_of(r.status); })
       .def_readonly("force_n", &ForceResult::force_n, "pressing force, N, >= 0")
       .def_readonly("variance_n2", &ForceResult::variance_n2, "N^2")
       .def_readonly("disagreement", &ForceResult::disagreement,
                     "difference of the forces by area and by depth, in standard deviations");
-  py::class_<ShearResult>(module, "ShearResult", "Tangential force and moment; force/look_up.hpp.")
+  py::class_<ShearResult>(module, "ShearResult",
+                          "Tangential force and moment; see docs/force/shear.md.")
       .def_property_readonly("ok", &ShearResult::ok)
       .def_property_readonly("status", [](const ShearResult& r) { return name_of(r.status); })
       .def_property_readonly("tangential_force_n",
@@ -193,7 +194,7 @@ void bind_fits(py::module_& module) {
   module.def(
       "fit_normal_force", &fit_normal_force, py::arg("measure"), py::arg("normal_force_n"),
       py::arg("degree") = 2, py::arg("through_zero") = true,
-      "Fits a curve to n contacts with forces of a gauge; see calibrate/look_up.hpp.\n\n"
+      "Fits a curve to n contacts with forces of a gauge; see docs/calibrate/calibration.md.\n\n"
       "measure: (n,), area in mm^2 or depth in mm. normal_force_n: (n,), N, > 0 for a press.\n"
       "NaN: not measured.");
   module.def("fit_tangential_force", &fit_tangential_force, py::arg("measure"),
@@ -214,8 +215,9 @@ void bind_look_up(py::module_& module) {
   bind_normal_force_fit(module);
   bind_shear_fit(module);
   bind_fits(module);
-  py::class_<NormalForce>(module, "NormalForce",
-                          "Normal force by one measure of the contact; force/look_up.hpp.")
+  py::class_<NormalForce>(
+      module, "NormalForce",
+      "Normal force by one measure of the contact; see docs/force/normal_force.md.")
       .def(py::init(&normal_force_of), py::arg("fit"))
       .def(
           "__call__",
@@ -223,7 +225,8 @@ void bind_look_up(py::module_& module) {
             return force(number_of(measure, "measure"));
           },
           py::arg("measure"), "result = force(measure)\n\nmeasure: mm^2 or mm, as in the fit.");
-  py::class_<Shear>(module, "Shear", "Tangential force and moment by look-up; force/look_up.hpp.")
+  py::class_<Shear>(module, "Shear",
+                    "Tangential force and moment by look-up; see docs/force/shear.md.")
       .def(py::init(&shear_of), py::arg("force"), py::arg("moment"),
            "force, moment: results of fit_tangential_force and fit_moment with the same reference.")
       .def(

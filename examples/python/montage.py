@@ -38,4 +38,5 @@ for column, name in zip(axes.T, frames):
         axis.set_axis_off()
 figure.colorbar(depths, ax=axes[1], label="depth, mm")
 figure.colorbar(pressed, ax=axes[2], label="pressed in, mm")
+figure.suptitle("White: where the object touches; below: depth; red: pressed in, blue: bulging out")
 figure.savefig(out, dpi=80)

@@ -49,9 +49,13 @@ pybind11::class_<Options> bind_options(pybind11::module_& module,
                                        const char* doc) {
   namespace py = pybind11;
   return py::class_<Options>(module, name, doc)
-      .def(py::init([](const py::kwargs& given) {
+      .def(py::init([name](const py::kwargs& given) {
         py::object options = py::cast(Options());
         for (const auto& [field, value] : given) {
+          if (!py::hasattr(options, field)) {
+            throw py::type_error(std::string(name) + " has no " + std::string(py::str(field)) +
+                                 "; it is " + std::string(py::repr(options)));
+          }
           py::setattr(options, field, value);
         }
         auto made = options.cast<Options>();

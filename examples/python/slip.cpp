@@ -64,7 +64,7 @@ class Ratio {
 void bind_slip(py::module_& module) {
   bind_options<StickOptions>(
       module, "StickOptions",
-      "Noise of the dots, in their unit, and what counts as slip; see slip/stick_ratio.hpp.")
+      "Noise of the dots, in their unit, and what counts as slip; see docs/slip/stick_ratio.md.")
       .def_readwrite("noise", &StickOptions::noise,
                      "standard deviation of a dot along x and along y; 0: measured")
       .def_readwrite("slip_share", &StickOptions::slip_share)
@@ -76,7 +76,8 @@ void bind_slip(py::module_& module) {
       .value("unknown", DotState::unknown)
       .value("slip", DotState::slip)
       .value("stick", DotState::stick);
-  py::class_<Result>(module, "StickResult", "Stick and slip of a frame; slip/stick_ratio.hpp.")
+  py::class_<Result>(module, "StickResult",
+                     "Stick and slip of a frame; see docs/slip/stick_ratio.md.")
       .def_property_readonly("ok", &Result::ok, "whether the ratio may be used")
       .def_property_readonly("updated", &Result::updated, "whether the ratio is of this frame")
       .def_property_readonly("status", [](const Result& r) { return name_of(r.status); })
@@ -97,9 +98,10 @@ void bind_slip(py::module_& module) {
           "motion", [](const Result& r) { return pose_tuple(r.motion); },
           "(R, t) of the object since the reference: x_now = scale R x_then + t")
       .def_readonly("scale", &Result::scale);
-  py::class_<Ratio>(module, "StickRatio",
-                    "Computes the share of the contact that sticks from printed dots; see\n"
-                    "slip/stick_ratio.hpp. It stores past frames: use one object for each pad.")
+  py::class_<Ratio>(
+      module, "StickRatio",
+      "Computes the share of the contact that sticks from printed dots; see\n"
+      "see docs/slip/stick_ratio.md. It stores past frames: use one object for each pad.")
       .def(py::init<const Count&, const Count&, const StickOptions&>(), py::arg("rows"),
            py::arg("cols"), py::arg("options") = StickOptions())
       .def(

@@ -180,7 +180,7 @@ def test_a_mistake_is_an_exception_with_its_reason(pad, estimate):
     red, green = channels(picture("frames/000005.png"))
     with pytest.raises(fp.ParameterError, match="pitch_mm"):
         fp.ContactRegion(fp.Camera(pitch_mm=-1), 10, 10)
-    with pytest.raises(AttributeError, match="pitch"):
+    with pytest.raises(TypeError, match="no pitch; it is Camera.plate_distance_mm=50.0, .*pitch_mm="):
         fp.Camera(pitch=0.1)
     with pytest.raises(ValueError, match="480 x 480"):
         estimate(red[1:], green[1:])
@@ -269,6 +269,8 @@ def test_all_that_can_be_called_says_what_it_takes():
     for function in (fp.fit_reference, fp.fit_normal_force, fp.fit_tangential_force, fp.fit_moment):
         assert "measure: (n,)" in function.__doc__ or "(rows, cols)" in function.__doc__ or \
             "All (n,)" in function.__doc__, function
+    pages = [page for thing in vars(fp).values() for page in re.findall(r"docs/[\w/]+\.md", thing.__doc__ or "")]
+    assert len(pages) >= 20 and all((RECORDING.parents[2] / page).exists() for page in pages), pages
 
 
 def test_statuses_are_those_of_cpp():

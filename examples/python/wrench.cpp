@@ -71,7 +71,7 @@ class WrenchOfDots {
 
 void bind_wrench(py::module_& module) {
   bind_options<Options>(module, "WrenchOptions",
-                        "Six axes from printed dots near the rim; see force/wrench.hpp.")
+                        "Six axes from printed dots near the rim; see docs/force/wrench.md.")
       .def_property(
           "base_radius_mm", [](const Options& o) { return o.cap.base_radius_mm; },
           [](Options& o, double mm) { o.cap.base_radius_mm = mm; })
@@ -113,7 +113,7 @@ void bind_wrench(py::module_& module) {
       .def_readonly("marks", &Result::marks, "dots used");
   py::class_<WrenchOfDots>(module, "Wrench",
                            "Six-axis force from the pixels of printed dots and the pressure;\n"
-                           "force/wrench.hpp.")
+                           "see docs/force/wrench.md.")
       .def(py::init<const fingerpad::Camera<double>&, const Options&>(), py::arg("camera"),
            py::arg("options") = Options())
       .def("learn", &WrenchOfDots::learn, py::arg("free_dots_px"), py::arg("pressure_mpa"),

@@ -211,7 +211,9 @@ void check_light(Recording& recording, Findings& findings) {
   findings.push_back({"frames",
                       "where the pad is brightest, red and green use " +
                           percent(frames.brightest / 255) + " of the range",
-                      "With more light depth errs less, in proportion.", false});
+                      has_reference ? "With more light depth errs less, in proportion."
+                                    : "With more light dots are found more exactly.",
+                      false});
   if (frames.touched.empty()) {
     return;  // no frame can be read
   }

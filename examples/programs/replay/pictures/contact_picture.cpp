@@ -79,13 +79,16 @@ void paint_dots(Canvas& canvas,
 
 cv::Mat Painter::contact(const Scene& scene, const DotGrid& initial_px) const {
   Sheet sheet("Where the object touches, and dots", caption(scene.frame, scene.time_s),
-              scene.image.size(), 92);
+              scene.image.size(), 116);
   paint_image(sheet.canvas, sheet.place.box, scene.image, brightest_);
   paint_dots(sheet.canvas, sheet.place, scene.dots, initial_px);
   paint_outline(sheet.canvas, sheet.place, scene.contact_mask, 2);
   paint_scale_bar(sheet.canvas, sheet.place, scene.image.cols, camera_.pitch_mm);
   sheet.write(50, words_of_contact(scene.touch.contact));
   sheet.write(74, words_of_motion(scene));
+  sheet.canvas.text({sheet.place.box.x, sheet.place.below() + 98},
+                    "yellow: dots that touch; lines: their way since the free pad", letter,
+                    ink::grey);
   return sheet.canvas.finished();
 }
 
