@@ -270,7 +270,7 @@ def test_all_that_can_be_called_says_what_it_takes():
         assert "measure: (n,)" in function.__doc__ or "(rows, cols)" in function.__doc__ or \
             "All (n,)" in function.__doc__, function
     pages = [page for thing in vars(fp).values() for page in re.findall(r"docs/[\w/]+\.md", thing.__doc__ or "")]
-    assert len(pages) >= 20 and all((RECORDING.parents[2] / page).exists() for page in pages), pages
+    assert len(pages) >= 20 and all((DATA.parents[1] / page).exists() for page in pages), pages
 
 
 def test_statuses_are_those_of_cpp():

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibrate/calibrations.hpp"
 #include "common/failure.hpp"
 #include "replay/check/check.hpp"
 #include "replay/replay.hpp"
@@ -226,8 +227,10 @@ TEST_CASE("cases: pictures with transparency, of 16 bit, of grey, and a first on
   INFO(kind);
   Recording recording;
   recording.write("frames", gel(Kind::slip), change);
+  recording.write("free", gel(Kind::free), kind == 3 ? unchanged : change);
   CHECK(recording.checked() == "");
   CHECK(is_in_time(recording.slips()));
+  CHECK_NOTHROW(calibrate::dots(recording.folder(), recording.folder() / "sensor.json"));
 }
 
 TEST_CASE("cases: a picture that is cut short is named and left out") {
@@ -509,6 +512,7 @@ TEST_CASE(
     CHECK(has(press.checked(), "compressed") == frames_too);
     for (const test::Line& line : press.table("frames.csv")) {
       CHECK((line.at("depth_status") == "ok") == is_ok);
+      CHECK(line.at("pad_changed") == "0");
       CHECK((line.at("contact_status") != "ok" || is_ok));
       CHECK((line.at("look_up_status") != "ok" || is_ok));
     }

@@ -32,7 +32,9 @@ void follow(fingerpad::DotFinder finder, const std::vector<cv::Mat>& pictures, c
 }  // namespace
 
 Outcome dots(const Path& recording, const Path& sensor_file) {
-  const auto pictures = read_pictures(recording / "free", known_pictures(sensor_file));
+  auto format = known_pictures(sensor_file);
+  format.may_be_grey = format.mosaic.empty();  // as replay reads a pad that has dots only
+  const auto pictures = read_pictures(recording / "free", format);
   const fingerpad::DotFinder finder(pictures.front());
   if (!finder.ok()) {
     replay::fail(recording / "free", "the first image shows " + finder.refusal());

@@ -107,6 +107,7 @@ std::vector<Column<FrameRow>> frame_columns() {
          return cell_if(r.has_depth,
                         std::hypot(r.touch.depth_light_sd_mm, r.compressed ? 0.1 : 0.0));
        }},
+      {"pad_changed", [](const Row& r) { return whole_if(r.has_depth, r.pad_has_changed()); }},
       {"valid_share", [](const Row& r) { return cell_of(r.valid_share); }},
       {"depth_mean_mm", [](const Row& r) { return cell_of(r.depth_mean_mm); }},
       {"depth_max_mm", [](const Row& r) { return cell_of(r.depth_max_mm); }},

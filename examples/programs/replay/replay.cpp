@@ -151,14 +151,15 @@ const char* why_none(const std::vector<FrameRow>& rows) {
                  : "the dots never moved far enough";
 }
 
-void print_dots(const Chain& chain, const Writer& writer) {
+/// Returns in how many frames the stick ratio is new.
+int print_dots(const Chain& chain, const Writer& writer) {
   std::printf("dots         %td, %s\n", fingerpad::count_present(chain.dots().initial()),
               chain.dots().how().c_str());
   if (const std::string side = chain.dots().side_how(); !side.empty()) {
     std::printf("side dots    %s\n", side.c_str());
   }
   if (!chain.dots().present()) {
-    return;
+    return 0;
   }
   double lowest = std::numeric_limits<double>::infinity();
   int updated = 0;
@@ -173,12 +174,30 @@ void print_dots(const Chain& chain, const Writer& writer) {
   } else {
     std::printf("stick ratio  none: %s\n", why_none(writer.rows()));
   }
+  return updated;
 }
 
-void print_doubts(const Writer& writer) {
+/// A gel that has no stick ratio in any frame has nothing to doubt there.
+void print_doubts(const Writer& writer, bool has_stick_ratio) {
   for (const auto& [what, frames] : writer.doubts().in_words()) {
-    std::printf("doubted      %s in %s\n", what.c_str(), frames.c_str());
+    if (what != "slip" || has_stick_ratio) {
+      std::printf("doubted      %s in %s\n", what.c_str(), frames.c_str());
+    }
   }
+}
+
+/// The picture of a gel to look at first: of its first slip, else of its last contact.
+std::string telling_picture(const std::vector<FrameRow>& rows) {
+  int frame = rows.front().frame;
+  for (const FrameRow& row : rows) {
+    if (row.gel && row.gel->slide.alarm) {
+      return numbered("slide_", row.frame, ".png");
+    }
+    if (row.gel && row.gel->contact.ok() && row.gel->contact.in_contact()) {
+      frame = row.frame;
+    }
+  }
+  return numbered("slide_", frame, ".png");
 }
 
 void print_summary(const Chain& chain,
@@ -195,12 +214,12 @@ void print_summary(const Chain& chain,
                 recording.sensor.camera.pitch_mm);
     print_depth(chain, writer);
   }
-  print_dots(chain, writer);
+  const int updated = print_dots(chain, writer);
   if (!dots_only) {
     print_look_up(writer, recording);
     print_wrench(writer, recording);
   }
-  print_doubts(writer);
+  print_doubts(writer, !dots_only || updated > 0);
   std::printf("table        %s\n", (writer.place() / "frames.csv").c_str());
   if (options.raw && !dots_only) {
     std::printf("depth maps   %s\n", (writer.place() / "depth").c_str());
@@ -208,8 +227,7 @@ void print_summary(const Chain& chain,
   }
   if (options.pictures) {
     std::printf("pictures     %s; start with %s\n", (writer.place() / "pictures").c_str(),
-                dots_only ? numbered("slide_", writer.rows().front().frame, ".png").c_str()
-                          : "montage.png");
+                dots_only ? telling_picture(writer.rows()).c_str() : "montage.png");
   }
   std::printf("charts       plot.py %s\n", writer.place().c_str());
 }

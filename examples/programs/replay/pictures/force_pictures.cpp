@@ -52,8 +52,8 @@ void paint_arrow_legend(Sheet& sheet, double length, const std::string& words, c
 
 cv::Mat Painter::traction(const Scene& scene) const {
   constexpr double margin = 76;
-  Sheet sheet("Load on each touched dot: red presses, blue pulls", caption(scene.frame, scene.time_s),
-              scene.image.size(), 92, margin);
+  Sheet sheet("Load on each touched dot: red presses, blue pulls",
+              caption(scene.frame, scene.time_s), scene.image.size(), 92, margin);
   Canvas& canvas = sheet.canvas;
   const Place& place = sheet.place;
   paint_image(canvas, place.box, scene.image, brightest_);
