@@ -114,33 +114,3 @@ TEST_CASE("rim calibration: what cannot be is refused or doubted", "[wrench]") {
   apexes[2].apex_mm += 0.2;
   CHECK(fit_rim(cap_of({}), apexes).cause == cause::no_such_cap);
 }
-
-TEST_CASE("rim calibration: from a known weight, with the pitch and the radius wrong",
-          "[wrench]") {
-  const auto& scenes = test::rim_scenes();
-  const auto& s = scenes.front();  // 6 N along the axis at its second frame, and no drag
-  const auto pixels = [&](std::size_t k) {
-    test::Random random(k + 1);
-    std::vector<Point2<double>> px;
-    for (const auto& dot : s.frames[k].dots_mm) {
-      const auto at = pixel_of(s.camera(), dot);
-      px.push_back({at.x + 0.02 * random.normal(), at.y + 0.02 * random.normal()});
-    }
-    return px;
-  };
-  const auto modulus = [&](double pitch, double radius_mm, double guess) {
-    auto camera = s.camera();
-    camera.pitch_mm *= 1 + pitch;
-    auto options = test::SeenRim::options_of(s, true);
-    options.cap.base_radius_mm += radius_mm;
-    options.modulus_n_per_mm *= guess;
-    const auto fit = fit_rim_to_weight(camera, options, pixels(0), s.frames[0].pressure_mpa,
-                                       pixels(1), s.frames[1].pressure_mpa, -s.frames[1].load[2]);
-    CAPTURE(pitch, radius_mm, fit.cause, fit.modulus_sd_n_per_mm);
-    CHECK(is_finite(fit.modulus_sd_n_per_mm));
-    return fit.modulus_n_per_mm / s.modulus_n_per_mm;
-  };
-  CHECK(modulus(0, 0, 1.3) == Approx(1).margin(0.03));
-  CHECK(modulus(0.003, 0, 1) == Approx(1).margin(0.05));
-  CHECK(modulus(0, 0.05, 1) == Approx(1).margin(0.05));
-}

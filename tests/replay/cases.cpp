@@ -478,6 +478,21 @@ TEST_CASE("cases: a gauge that was set to zero with the pad inflated is told") {
   }
 }
 
+TEST_CASE("cases: saturated frames give no confident depth") {
+  const Press press;
+  for (const fs::directory_entry& entry : fs::directory_iterator(press.folder() / "frames")) {
+    cv::Mat picture = cv::imread(entry.path().string());
+    const cv::Size size = picture.size() / 8;
+    picture({picture.cols / 2, picture.rows / 2, size.width, size.height}) = cv::Scalar(0, 0, 255);
+    cv::imwrite(entry.path().string(), picture);
+  }
+  (void)press.checked();
+  for (const test::Line& line : press.table("frames.csv")) {
+    CHECK(line.at("depth_status") == "saturated");
+    CHECK(line.at("contact_status") != "ok");
+  }
+}
+
 TEST_CASE(
     "cases: frames that were compressed unlike the reference, or much, give no confident contact") {
   const auto compressed = [](const cv::Mat& picture, int quality) {

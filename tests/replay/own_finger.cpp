@@ -127,15 +127,21 @@ void record(const fs::path& folder, double aside_mm, double glare = 0) {
       << R"( "center_px": [79.6, 79.1], "pitch_mm": 0.25}})";
 }
 
-/// A target of 9 x 9 dots of 1 mm, 3 mm apart, `raised_mm` above the plate in air.
-cv::Mat target(double raised_mm) {
+/// A target of 9 x 9 dots of 1 mm, 3 mm apart, its middle `raised_mm` above the plate in air,
+/// tilted about an axis at `angle` to x.
+cv::Mat target(double raised_mm, double tilt = 0, double angle = 0) {
   cv::Mat_<cv::Vec3w> image(size_px, size_px);
-  const double far = (camera.plate_distance_mm + raised_mm) / camera.plate_distance_mm;
+  const double far = camera.plate_distance_mm + raised_mm, c = std::cos(angle), s = std::sin(angle);
   const auto off = [](double x) { return x - 3 * std::clamp(std::round(x / 3), -4.0, 4.0); };
   for (int i = 0; i < image.rows; ++i) {
     for (int j = 0; j < image.cols; ++j) {
-      const auto at = far * point_at(camera, double(i), double(j), 0.0);
-      const double dark = 1 / (1 + std::exp((std::hypot(off(at.x), off(at.y)) - 0.5) / 0.05));
+      const auto ray = 1 / camera.plate_distance_mm * point_at(camera, double(i), double(j), 0.0);
+      const double up = c * ray.y - s * ray.x;  // across the axis, per mm of distance
+      const double meets = far / (1 - up * std::tan(tilt));
+      const double along = meets * (c * ray.x + s * ray.y);
+      const double across = meets * up / std::cos(tilt);
+      const double x = c * along - s * across, y = s * along + c * across;
+      const double dark = 1 / (1 + std::exp((std::hypot(off(x), off(y)) - 0.5) / 0.05));
       const auto level = cv::saturate_cast<ushort>(256 * 170 * (1 - 0.8 * dark));
       image(i, j) = {level, level, level};
     }
@@ -241,7 +247,7 @@ TEST_CASE("a finger of one's own: a press that lies aside is named", "[own]") {
   CHECK(report.because.find("press 2 is not where") != std::string::npos);
 }
 
-TEST_CASE("a finger of one's own: compressed pictures are told", "[own]") {
+TEST_CASE("a finger of one's own: compressed and saturated pictures are told", "[own]") {
   const test::ScratchFolder scratch;
   record(scratch.path(), 0, 40);
   const fs::path file = scratch.path() / "reference.png";
@@ -251,6 +257,9 @@ TEST_CASE("a finger of one's own: compressed pictures are told", "[own]") {
   cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
   replay::write_png(file, cv::imdecode(bytes, cv::IMREAD_COLOR));
   CHECK(calibrated(scratch.path()).because.find("compressed") != std::string::npos);
+  picture(cv::Rect(70, 70, 20, 20)) = cv::Scalar(255, 200, 255);
+  replay::write_png(file, picture);
+  CHECK(calibrated(scratch.path()).because.find("saturated") != std::string::npos);
 }
 
 TEST_CASE("a finger of one's own: glare is left out, and no press is blamed", "[own]") {
@@ -279,6 +288,47 @@ TEST_CASE("a finger of one's own: the target may be cut by the picture", "[own]"
   const auto& found = outcome.sections.at("camera");
   CHECK(found.at("plate_distance_mm").get<double>() == Approx(50).margin(0.5));
   CHECK(found.at("center_px").at(1).get<double>() == Approx(79.1 - 35).margin(0.1));
+}
+
+TEST_CASE("a finger of one's own: a target that is tilted in place of raised", "[own]") {
+  const test::ScratchFolder scratch;
+  const fs::path tilted = scratch.path() / "plate_tilted";
+  fs::create_directories(scratch.path() / "plate");
+  fs::create_directories(tilted);
+  replay::write_png(scratch.path() / "plate/0.png", target(0));
+  calibrate::DotPlate plate;
+  plate.rows = plate.cols = 9;
+  plate.pitch_mm = 3;
+  for (const double angle : {0.3, 2.4, 4.5}) {
+    CHECK_THROWS_AS(calibrate::camera(scratch.path(), plate), replay::Failure);  // too few
+    replay::write_png(tilted / (std::to_string(angle) + ".png"), target(7, 0.5, angle));
+  }
+  const auto outcome = calibrate::camera(scratch.path(), plate);
+  INFO(outcome.reports.front().because);
+  CHECK(outcome.reports.front().verdict == calibrate::Verdict::good);
+  CHECK(outcome.sections.at("camera").at("plate_distance_mm").get<double>() ==
+        Approx(50).margin(0.5));
+}
+
+TEST_CASE("a finger of one's own: the modulus from one weight", "[own]") {
+  const test::ScratchFolder scratch;
+  const fs::path folder = scratch.path() / "weight";
+  fs::create_directories(folder / "frames");
+  for (const char* name : {"sensor.json", "reference.png", "reference_depth.tiff",
+                           "frames/000000.png", "frames/000005.png"}) {
+    fs::copy(test::bundled_recordings / "press" / name, folder / name);
+  }
+  std::ofstream(folder / "signals.csv")
+      << "frame,time_s,pressure_mpa\n0,0,0.016000\n1,0.1,0.020365\n";
+  calibrate::RimNoise noise;
+  noise.base_radius_mm = 18.735;
+  noise.stress_free_height_mm = 11;
+  const auto by = [&](double weight_n) {
+    const auto found = calibrate::rim_by_weight(folder, folder / "sensor.json", noise, weight_n);
+    return found.sections.at("rim").at("membrane_modulus_n_per_mm").get<double>();
+  };
+  CHECK(by(3.09135) == Approx(0.5).epsilon(0.03));
+  CHECK_THROWS_AS(by(2 * 3.09135), replay::Failure);  // no free pad of its height
 }
 
 TEST_CASE("a finger of one's own: the free shape from touches", "[own]") {

@@ -92,7 +92,10 @@ bool all(const Path& folder) {
   const About about = read_about(folder / "about.json");
   const Path pad = folder / "pad", sensor = folder / "sensor.json";
   const Step steps[] = {
-      {"camera", {"plate", "plate_raised"}, [&] { return camera(folder, about.plate); }},
+      {"camera",
+       {"plate",
+        std::filesystem::exists(folder / "plate_tilted") ? "plate_tilted" : "plate_raised"},
+       [&] { return camera(folder, about.plate); }},
       {"shape", {"pad/free", "pad/touches.csv"}, [&] { return shape(pad, sensor, about.pad); }},
       {"absorption",
        {"pad/free", "pad/frames", "pad/presses.csv"},

@@ -19,7 +19,7 @@ using Path = std::filesystem::path;
 
 /// The camera, from images of a plate with a grid of printed dots. The plate lies on the inner face
 /// of the pad's plate, without fluid, with its center dot on the pad's axis (plate/), and is then
-/// lifted straight up (plate_raised/).
+/// lifted straight up (plate_raised/), or tilted in three pictures or more (plate_tilted/).
 struct DotPlate {
   int rows = 0, cols = 0;  ///< of dots; odd, so that there is a center dot
   double pitch_mm = 0;
@@ -71,6 +71,12 @@ struct RimNoise {
   bool finds_rubber = false;  ///< also fits the Mooney share
 };
 Outcome rim(const Path& recording, const RimNoise& noise);
+/// The modulus with which a fingertip gives a known weight in the frames of `recording` in which
+/// something touches; the first is of the free pad, all have a pressure.
+Outcome rim_by_weight(const Path& recording,
+                      const Path& sensor,
+                      const RimNoise& noise,
+                      double weight_n);
 
 /// Force curves, from contacts (frames.csv of replay, or any table with its columns) and a table of
 /// a gauge with the columns of forces.csv. `gauge` may be empty if `contacts` has these columns.

@@ -17,6 +17,8 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/calibrate/look_up.hpp"
 #include "fingerpad/calibrate/rim.hpp"
+#include "replay/dots/dots.hpp"
+#include "replay/steps/fingertip_options.hpp"
 
 namespace calibrate {
 namespace {
@@ -293,6 +295,58 @@ Outcome rim(const Path& recording, const RimNoise& noise) {
   }
   outcome.reports = {report};
   outcome.plots = {plot};
+  return outcome;
+}
+
+Outcome rim_by_weight(const Path& recording,
+                      const Path& sensor_file,
+                      const RimNoise& noise,
+                      double weight_n) {
+  double modulus = 0, sd = 0;
+  for (int round = 0; round < 4; ++round) {  // forces are nearly proportional to the modulus
+    replay::Recording seen = replay::open_recording(recording, sensor_file);
+    if (round == 0) {
+      const fingerpad::FreeApex apex{seen.signals.pressure_mpa(0), seen.sensor.pad.apex_height_mm};
+      modulus = fingerpad::fit_rim({noise.base_radius_mm, noise.stress_free_height_mm}, {&apex, 1})
+                    .modulus_n_per_mm;
+    }
+    replay::Rim& rim = seen.sensor.rim ? *seen.sensor.rim : seen.sensor.rim.emplace();
+    rim.membrane_modulus_n_per_mm = modulus;
+    rim.membrane_modulus_sd_n_per_mm = 1e-6 * modulus;
+    rim.stress_free_inclination_rad =
+        2 * std::atan(noise.stress_free_height_mm / noise.base_radius_mm);
+    if (const auto lacking = replay::lacking_for_wrench(seen); !lacking.empty()) {
+      replay::fail(recording, lacking);
+    }
+    replay::DotSource dots(recording, seen.sensor, seen.reference, seen.reference_depth,
+                           seen.frames.size());
+    const auto settings = replay::fingertip_settings(seen, dots.initial());
+    replay::RecordedFingertip fingertip(settings);
+    double press_n = 0, frames = 0;
+    for (int k = 0; k < seen.frames.size(); ++k) {
+      const cv::Mat frame = seen.frames.next();
+      const auto touch =
+          fingertip(frame, dots.of(k, frame), seen.signals.pressure_mpa(k), 0.1 * k, dots.side());
+      if (touch.contact.in_contact() && touch.wrench.has_force()) {
+        press_n -= touch.wrench.force_n.z;
+        sd = std::sqrt(touch.wrench.covariance(2, 2)) / weight_n;
+        frames += 1;
+      }
+    }
+    if (!(press_n > 0)) {
+      replay::fail(recording, "no frame has a contact and a force: does the weight press?");
+    }
+    modulus *= weight_n * frames / press_n;
+  }
+  Report report{.what = "rim, by a weight", .residual_unit = "N"};
+  report.parameters = {{"membrane_modulus_n_per_mm", modulus, sd * modulus}};
+  report.doubt(sd > 0.05, "the weight gives the modulus to no better than 5 %: use a heavier one");
+  Outcome outcome;
+  outcome.sections["rim"] = {{"membrane_modulus_n_per_mm", modulus},
+                             {"membrane_modulus_sd_n_per_mm", sd * modulus},
+                             {"stress_free_inclination_rad",
+                              2 * std::atan(noise.stress_free_height_mm / noise.base_radius_mm)}};
+  outcome.reports = {report};
   return outcome;
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/calib3d.hpp>
 #include <string>
 
 #include "calibrate/recordings.hpp"
@@ -23,8 +24,7 @@ namespace {
 using fingerpad::Point2;
 
 /// The dots of the target, or of as many rows and columns around its middle as the picture holds.
-std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
-  const cv::Mat picture = read_pictures(folder, plate.format()).front();
+std::vector<PlateDot> dots_of(const cv::Mat& picture, const Path& folder, const DotPlate& plate) {
   const fingerpad::Point2<double> middle_px = {(picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0};
   for (int out = 0; out <= plate.rows + plate.cols; out += 2) {
     for (int out_rows = 0; out_rows <= out; out_rows += 2) {
@@ -60,24 +60,30 @@ std::vector<PlateDot> dots_of(const Path& folder, const DotPlate& plate) {
                            "picture; they must be sharp and evenly lit");
 }
 
-/// Least squares of N parameters by normal equations, which are well conditioned here: all lengths
-/// are in mm about the middle of a pad. (A decomposition of all rows takes ten seconds to compile.)
-template <int N>
-class LeastSquares {
- public:
-  using Vector = Eigen::Matrix<double, N, 1>;
-
-  void add(const Vector& regressors, double value) {
-    normal_ += regressors * regressors.transpose();
-    right_ += regressors * value;
-  }
-  Eigen::Matrix<double, N, N> inverse() const { return normal_.inverse(); }
-  Vector solution() const { return inverse() * right_; }
-
- private:
-  Eigen::Matrix<double, N, N> normal_ = Eigen::Matrix<double, N, N>::Zero();
-  Vector right_ = Vector::Zero();
+/// Where the camera stands before the target on the plate.
+struct Stand {
+  double distance_mm, sd_mm, tilt_rad;
 };
+
+/// From pictures of the target, the first on the plate, the others tilted against it.
+Stand stand_by_tilts(const std::vector<std::vector<PlateDot>>& targets, const cv::Size& size) {
+  std::vector<std::vector<cv::Point3f>> dots(targets.size());
+  std::vector<std::vector<cv::Point2f>> px(targets.size());
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    for (const PlateDot& dot : targets[k]) {
+      dots[k].emplace_back(cv::Point2d(dot.plate_mm.x, dot.plate_mm.y));
+      px[k].emplace_back(cv::Point2d(dot.picture_px.x, dot.picture_px.y));
+    }
+  }
+  cv::Mat matrix, lens, lens_sd, place_sd, rest;
+  std::vector<cv::Mat> turns, places;
+  cv::calibrateCamera(dots, px, size, matrix, lens, turns, places, lens_sd, place_sd, rest,
+                      cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3);
+  cv::Matx33d axes;
+  cv::Rodrigues(turns.front(), axes);
+  const cv::Vec3d normal(axes(0, 2), axes(1, 2), axes(2, 2)), place(places.front());
+  return {std::abs(normal.dot(place)), place_sd.at<double>(5), std::acos(std::abs(normal[2]))};
+}
 
 /// What the pictures of a target determine, in this order.
 enum { px_per_mm, aspect, distance, center_x, center_y, k1, turn, turn_high, shift_x, shift_y };
@@ -137,28 +143,35 @@ CameraEstimate estimate_camera(const std::array<const std::vector<PlateDot>*, 2>
                                double raised_mm,
                                std::array<double, 10> p,
                                const std::array<bool, 10>& is_held) {
+  using Matrix = Eigen::Matrix<double, 10, 10>;
+  using Vector = Eigen::Matrix<double, 10, 1>;
   CameraEstimate best;
   for (int step = 0; step < 20; ++step) {
     std::array<CameraNumber, 10> number;
-    LeastSquares<10> fit;
+    Matrix normal = Matrix::Zero();  // well conditioned: all lengths are in mm about the middle
+    Vector right = Vector::Zero();
+    const auto add = [&](const Vector& regressors, double value) {
+      normal += regressors * regressors.transpose();
+      right += regressors * value;
+    };
     double count = 0, residual_sq = 0;
     for (std::size_t k = 0; k < p.size(); ++k) {
       number[k] = is_held[k] ? CameraNumber(p[k]) : CameraNumber::parameter(p[k], k);
-      fit.add(LeastSquares<10>::Vector::Unit(static_cast<int>(k)) * (is_held[k] ? 1 : 0), 0);
+      add(Vector::Unit(static_cast<int>(k)) * (is_held[k] ? 1 : 0), 0);
       count -= is_held[k] ? 0 : 1;
     }
     for (const bool is_high : {false, true}) {
       for (const PlateDot& dot : *pictures[is_high ? 1 : 0]) {
         const auto at = seen_at(number, dot.plate_mm, is_high, raised_mm);
         const Point2<double> miss = dot.picture_px - Point2<double>{at.x.value, at.y.value};
-        fit.add(Eigen::Map<const LeastSquares<10>::Vector>(at.x.slopes.data()), miss.x);
-        fit.add(Eigen::Map<const LeastSquares<10>::Vector>(at.y.slopes.data()), miss.y);
+        add(Eigen::Map<const Vector>(at.x.slopes.data()), miss.x);
+        add(Eigen::Map<const Vector>(at.y.slopes.data()), miss.y);
         residual_sq += squared_norm(miss);
         count += 2;
       }
     }
-    const auto inverse = fit.inverse();
-    const LeastSquares<10>::Vector change = fit.solution();
+    const Matrix inverse = normal.inverse();
+    const Vector change = inverse * right;
     double largest = 0;  // change in standard deviations
     best.residual_px = std::sqrt(residual_sq / count);
     best.p = p;
@@ -227,26 +240,48 @@ Outcome camera(const Path& recording, const DotPlate& plate) {
   if (plate.rows < 3 || plate.cols < 3 || plate.rows % 2 == 0 || plate.cols % 2 == 0) {
     replay::fail(recording, "the numbers of rows and columns of the target must be odd and >= 3");
   }
-  const bool has_raised = plate.raised_mm > 0;
-  const std::vector<PlateDot> low = dots_of(recording / "plate", plate);
+  const Path tilted = recording / "plate_tilted";
+  const bool is_tilted = std::filesystem::exists(tilted);
+  const bool has_raised = !is_tilted && plate.raised_mm > 0;
+  const auto look = [&](const Path& folder) {
+    return dots_of(read_pictures(folder, plate.format()).front(), folder, plate);
+  };
+  const std::vector<PlateDot> low = look(recording / "plate");
   const std::vector<PlateDot> high =
-      has_raised ? dots_of(recording / "plate_raised", plate) : std::vector<PlateDot>{};
+      has_raised ? look(recording / "plate_raised") : std::vector<PlateDot>{};
   if (has_raised && !(TargetLook(high).px_per_mm < TargetLook(low).px_per_mm)) {
     replay::fail(recording / "plate_raised",
                  "the dots are not closer together than in plate/; check whether the two folders "
                  "are exchanged");
   }
-  CameraFit fit = fit_camera(low, high, plate.raised_mm, plate.plate_distance_mm);
+  Stand stand{plate.plate_distance_mm, std::numeric_limits<double>::quiet_NaN(), 0};
+  if (is_tilted) {
+    const auto pictures = read_pictures(tilted, plate.format());
+    std::vector<std::vector<PlateDot>> targets = {low};
+    for (const cv::Mat& picture : pictures) {
+      targets.push_back(dots_of(picture, tilted, plate));
+    }
+    if (targets.size() < 4) {
+      replay::fail(tilted, "fewer than three pictures: tilt the target to different sides");
+    }
+    stand = stand_by_tilts(targets, pictures.front().size());
+  }
+  CameraFit fit = fit_camera(low, high, plate.raised_mm, stand.distance_mm);
+  if (is_tilted) {
+    fit.distance_sd_mm = stand.sd_mm;
+  }
   fit.camera.refractive_index = plate.refractive_index;
   const auto& found = fit.camera;
   Report report{.what = "camera", .residual = fit.residual_px, .residual_unit = "px (dots)"};
   report.parameters = {{"pitch_mm", found.pitch_mm, fit.pitch_sd_mm},
                        {"center_x_px", found.center_x_px, fit.center_sd_px},
                        {"center_y_px", found.center_y_px, fit.center_sd_px}};
-  if (has_raised) {
+  if (has_raised || is_tilted) {
     report.parameters.push_back({"plate_distance_mm", found.plate_distance_mm, fit.distance_sd_mm});
     report.doubt(fit.distance_sd_mm > 0.02 * found.plate_distance_mm,
-                 "the distance is uncertain by more than 2 %: raise the target further");
+                 "the distance is uncertain by more than 2 %: raise or tilt the target further");
+    report.doubt(stand.tilt_rad > 0.02,
+                 "the camera is tilted against the plate by more than 0.02 rad: set it straight");
     // a center on the axis does not move
     report.doubt(fit.moved_mm > 0.3,
                  "the middle of the target moved by more than 0.3 mm when it was raised: it is not "

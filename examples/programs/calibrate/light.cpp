@@ -289,18 +289,22 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
     const auto& row = fit.covariance[i];
     report.covariance.push_back({row[0], row[1], row[2]});
   }
+  const cv::Mat pad = known.free_mm > 0;
+  report.doubt(replay::saturated_share(known.reference, pad) > replay::most_saturated,
+               "more than 1 % of the pad is saturated, where depth is not known: shorten the "
+               "exposure or lower the gain of that colour, and record everything again");
   report.doubt(!fit.ok(), text_of(fit));
   const std::string misplaced = misplaced_press(error_mm, samples);
   report.doubt(!misplaced.empty(), misplaced);
-  const cv::Mat pad = known.free_mm > 0;
   report.doubt(replay::step_between_blocks(known.reference, pad) > replay::compressed_step,
                "the pictures were compressed: depths are right to what is left over, but c_red and "
                "c_green err by more than their sd; calibrate with PNG or raw pictures");
   report.doubt(
       left_mm > 0.05 && fit.red_blur > 5 * sd(fit.parameters - 1),
-      "red is blurred more than green, as by a mosaic that is interpolated, and depths at "
-      "known places are off by more than 0.05 mm: c_green less c_red errs by more than its "
-      "sd; give raw pictures of the mosaic, or a lens that blurs by a pixel");
+      "depths at known places are off by more than 0.05 mm, by noise or by a mosaic that samples "
+      "the edges of dots too coarsely: c_green less c_red errs by more than its sd; use more "
+      "light, "
+      "a lens that blurs by a pixel, or a wider window");
   const bool mixed = sd(0) > fluid.c_red_per_mm / 2;
   report.doubt(depth_sd > 0.05,
                std::string("the fit alone makes depths uncertain by more than 0.05 mm") +

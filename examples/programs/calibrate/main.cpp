@@ -67,6 +67,7 @@ struct Arguments {
   int max_radius_px = 50;
   double pressure_mpa = 0;
   calibrate::RimNoise rim;
+  double weight_n = 0;
   calibrate::Plan plan;
   Path contacts, gauge, practice, finger, today;
 };
@@ -137,8 +138,14 @@ void add_dots(CLI::App& app, Common& common, std::function<Outcome()>& work) {
 
 void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<Outcome()>& work) {
   auto* sub = add(
-      app, common, "rim", "the membrane's modulus and stress-free height, from apex.csv",
-      [&] { return calibrate::rim(common.recording, given.rim); }, work);
+      app, common, "rim",
+      "the membrane's modulus and stress-free height, from apex.csv, or the modulus from a weight",
+      [&] {
+        return given.weight_n > 0 ? calibrate::rim_by_weight(common.recording, common.sensor(),
+                                                             given.rim, given.weight_n)
+                                  : calibrate::rim(common.recording, given.rim);
+      },
+      work);
   sub->add_option("--base-radius-mm", given.rim.base_radius_mm, "base radius of the pad")
       ->required()
       ->check(CLI::PositiveNumber);
@@ -151,6 +158,9 @@ void add_forces(CLI::App& app, Common& common, Arguments& given, std::function<O
                   "noise of an apex height in apex.csv");
   sub->add_option("--pressure-noise-share", given.rim.pressure_noise_share,
                   "noise of a pressure, as a share of it");
+  sub->add_option("--weight-n", given.weight_n,
+                  "weight on the pad wherever something touches it, in place of apex.csv")
+      ->check(CLI::PositiveNumber);
   sub->add_flag("--rubber", given.rim.finds_rubber, "fit the type of rubber, too");
 
   sub = add(

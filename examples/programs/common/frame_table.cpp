@@ -9,7 +9,6 @@ namespace {
 
 using Row = FrameRow;
 using Text = std::string;
-constexpr const char* compressed = "compressed";
 
 Text cell_if(bool known, double value) {
   return known ? cell_of(value) : "";
@@ -22,10 +21,10 @@ Text whole_if(bool known, fingerpad::Index value) {
 Text depth_status(const Row& row) {
   const auto light = row.touch.neighbour_light;
   const Text words = name_of(row.touch.depth.ok() ? light : row.touch.depth.status);
-  return !row.has_depth                                ? ""
-         : words == "ok" && row.compressed             ? compressed
-         : words == "ok" && row.touch.light_in_doubt() ? "light has changed"
-                                                       : words;
+  return !row.has_depth                                  ? ""
+         : words == "ok" && row.picture_fault != nullptr ? row.picture_fault
+         : words == "ok" && row.touch.light_in_doubt()   ? "light has changed"
+                                                         : words;
 }
 
 Text contact_status(const Row& row) {
@@ -34,7 +33,7 @@ Text contact_status(const Row& row) {
          : !touch.contact.ok()                                  ? name_of(touch.contact.status)
          : touch.contact_in_doubt && touch.contact.in_contact() ? "edge in doubt"
          : touch.contact_in_doubt                               ? "force without region"
-         : row.compressed                                       ? compressed
+         : row.picture_fault != nullptr                         ? row.picture_fault
                                                                 : "ok";
 }
 
@@ -42,7 +41,7 @@ Text look_up_status(const Row& row) {
   const auto status = row.touch.normal.status;
   return !row.has_curves                              ? ""
          : !row.touch.contact.ok()                    ? "contact in doubt"
-         : row.compressed                             ? compressed
+         : row.picture_fault != nullptr               ? row.picture_fault
          : status == fingerpad::ForceStatus::measured ? "ok"
                                                       : name_of(status);
 }
@@ -104,8 +103,8 @@ std::vector<Column<FrameRow>> frame_columns() {
       {"depth_status", depth_status},
       {"depth_light_sd_mm",
        [](const Row& r) {
-         return cell_if(r.has_depth,
-                        std::hypot(r.touch.depth_light_sd_mm, r.compressed ? 0.1 : 0.0));
+         return cell_if(r.has_depth, std::hypot(r.touch.depth_light_sd_mm,
+                                                r.picture_fault != nullptr ? 0.1 : 0.0));
        }},
       {"pad_changed", [](const Row& r) { return whole_if(r.has_depth, r.pad_has_changed()); }},
       {"valid_share", [](const Row& r) { return cell_of(r.valid_share); }},

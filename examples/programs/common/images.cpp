@@ -221,6 +221,14 @@ cv::Mat read_colour_image(const fs::path& file, const PictureFormat& format) {
   return linear_colours(read_stored_image(file), format, file);
 }
 
+double saturated_share(const cv::Mat& frame, const cv::Mat_<uchar>& pad) {
+  cv::Mat red, green;
+  cv::extractChannel(frame, red, 2);
+  cv::extractChannel(frame, green, 1);
+  const cv::Mat high = cv::max(red, green) >= (frame.depth() == CV_16U ? 254 * 256 : 254);
+  return cv::countNonZero(high & pad) / static_cast<double>(cv::countNonZero(pad));
+}
+
 double step_between_blocks(const cv::Mat& frame, const cv::Mat_<uchar>& pad) {
   cv::Mat red, green;
   cv::Mat_<float> colour;

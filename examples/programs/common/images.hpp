@@ -52,6 +52,10 @@ cv::Mat linear_colours(const cv::Mat& stored,
 /// Reads such an image; throws Failure.
 cv::Mat read_colour_image(const std::filesystem::path& file, const PictureFormat& format = {});
 
+/// Share of the pixels of `pad` in which red or green is saturated, and what is too much.
+double saturated_share(const cv::Mat& frame, const cv::Mat_<uchar>& pad);
+constexpr double most_saturated = 0.01;
+
 /// Mean step of red - green across the borders of blocks of 16 columns in `pad`, over that
 /// elsewhere. About 1 in raw pictures and up to 1.26 after a mosaic; JPEG and video keep colours in
 /// such blocks.

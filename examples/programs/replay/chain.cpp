@@ -94,8 +94,12 @@ void Chain::look(const DotGrid& dots_px, Scene& scene) {
   scene.touch = seen.touch;
   scene.has_depth = true;
   const double step = std::max(1.0, step_between_blocks(scene.image, pad_));
-  scene.compressed = step > worst_compressed_step || step > compressed_step * reference_step_ ||
-                     reference_step_ > compressed_step * step;
+  scene.picture_fault = saturated_share(scene.image, pad_) > most_saturated ? "saturated"
+                        : step > worst_compressed_step ||
+                                step > compressed_step * reference_step_ ||
+                                reference_step_ > compressed_step * step
+                            ? "compressed"
+                            : nullptr;
   scene.has_rim = seen.has_rim;
   scene.has_curves = recording_.sensor.force.has_value();
   describe_depth(scene);

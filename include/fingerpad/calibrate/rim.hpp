@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// The membrane's mu t (shear modulus times thickness) for force/wrench.hpp, in one of two ways:
-// from the apex of the contact-free pad at several pressures, which is that of an inflated cap of
-// its rubber (membrane/free_pad.hpp), or from one known weight on the pad.
+// The membrane's mu t (shear modulus times thickness) for force/wrench.hpp, from the apex of the
+// contact-free pad at several pressures, which is that of an inflated cap of its rubber
+// (membrane/free_pad.hpp). docs/force/wrench.md has it from one known weight.
 //
 // At a single pressure the apex says only how far the pad has risen above its stress-free height,
 // so an error of that height is one of mu t. Several pressures give both.
@@ -11,17 +11,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
-#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 
 namespace fingerpad {
@@ -59,7 +54,7 @@ struct [[nodiscard]] RimFit {
   double height_sd_mm = not_a_number<double>();
   double mooney_share = 0;  ///< C2 / (C1 + C2)
   double mooney_sd = 0;
-  double residual_mm = 0;  ///< of the apex heights, rms; of a weight, N
+  double residual_mm = 0;  ///< of the apex heights, rms
 
   bool ok() const { return cause == nullptr; }
 };
@@ -71,8 +66,7 @@ inline constexpr char one_pressure[] =
 inline constexpr char no_such_cap[] =
     "the apex heights are not those of an inflated cap: check radius, rubber and units";
 inline constexpr char modulus_uncertain[] =
-    "mu t is uncertain by more than 5 %: use pressures further apart, more frames or a heavier "
-    "weight";
+    "mu t is uncertain by more than 5 %: use pressures further apart, or more frames";
 }  // namespace cause
 
 /// mu t and the stress-free height from apex heights at one or more pressures. `cap` says what is
@@ -175,70 +169,6 @@ inline RimFit fit_rim(const StressFreeCap<double>& cap,
                 : most < 1.2 * least              ? cause::one_pressure
                 : covariance(0, 0) > square(0.05) ? cause::modulus_uncertain
                                                   : nullptr;
-  }
-  return fit;
-}
-
-/// mu t from one weight that presses on the pad along its axis: the modulus with which the dots
-/// give it. `free_px` and `pressed_px` are the same dots without the weight and under it, those
-/// that the weight touches or hides NaN; `options.modulus_n_per_mm` is a guess within a factor of
-/// 2. Refuses (parameter_error) what the wrench refuses, a weight that is not above 0, and dots
-/// that give no force.
-template <class CameraType>
-RimFit fit_rim_to_weight(const CameraType& camera,
-                         WrenchOptions options,
-                         std::span<const Point2<double>> free_px,
-                         double free_pressure_mpa,
-                         std::span<const Point2<double>> pressed_px,
-                         double pressed_pressure_mpa,
-                         double weight_n,
-                         double dot_sd_px = 0.06) {
-  constexpr const char* owner = "fit_rim_to_weight";
-  require(owner, {{"weight_n", weight_n, positive}, {"dot_sd_px", dot_sd_px, positive}});
-  expects(free_px.size() == pressed_px.size(), owner, "pressed_px", pressed_px.size(),
-          "as many as free_px");
-  options.modulus_sd_share = 0;
-  const auto force_of = [&](double modulus) {
-    options.modulus_n_per_mm = modulus;
-    Wrench<CameraType> wrench(camera, options);
-    std::vector<Mark> marks;
-    (void)wrench.begin(free_pressure_mpa);
-    for (std::size_t k = 0; k < free_px.size(); ++k) {
-      if (auto mark = wrench.place_in_free_picture(free_px[k]); mark) {
-        mark->px = pressed_px[k];
-        mark->sd_px = dot_sd_px;
-        marks.push_back(*mark);
-      }
-    }
-    return wrench(marks, pressed_pressure_mpa);
-  };
-  double x = std::log(options.modulus_n_per_mm), before = x + 0.02;
-  auto force = force_of(std::exp(before));
-  double last = force.force_n.z;
-  RimFit fit;
-  double slope = 0;
-  for (int iteration = 0; iteration < 12 && !fit.ok(); ++iteration) {
-    force = force_of(std::exp(x));
-    expects(is_finite(force.force_n.z), owner, "force", force.force_n.z,
-            (std::string("that of a fit, but it says ") + name_of(force.status)).c_str());
-    slope = (force.force_n.z - last) / (x - before);
-    before = x;
-    last = force.force_n.z;
-    const double step = -(force.force_n.z + weight_n) / slope;
-    if (!(std::fabs(step) < 3)) {
-      break;
-    }
-    x += (std::min)((std::max)(step, -0.3), 0.3);
-    fit.cause = std::fabs(step) < 1e-4 ? nullptr : fit.cause;
-  }
-  const double spread = std::sqrt(force.covariance(2, 2)) / std::fabs(slope);
-  fit.modulus_n_per_mm = std::exp(x);
-  fit.modulus_sd_n_per_mm = fit.modulus_n_per_mm * spread;
-  fit.height_mm = options.cap.height_mm;
-  fit.mooney_share = options.cap.mooney_share;
-  fit.residual_mm = std::fabs(last + weight_n);
-  if (fit.ok()) {
-    fit.cause = spread > 0.05 ? cause::modulus_uncertain : nullptr;
   }
   return fit;
 }

@@ -25,16 +25,6 @@ cv::Mat_<float> light_of(const cv::Mat& frame) {
   return light;
 }
 
-/// Share of the pixels of `pad` in which a colour is saturated.
-double saturated_share(const cv::Mat& frame, const cv::Mat& pad) {
-  cv::Mat high;
-  cv::inRange(frame.reshape(1), frame.depth() == CV_16U ? 254 * 256 : 254, 65535, high);
-  cv::Mat any;
-  cv::reduce(high.reshape(1, static_cast<int>(frame.total())), any, 1, cv::REDUCE_MAX);
-  return cv::countNonZero(any.reshape(1, frame.rows) & pad) /
-         static_cast<double>(cv::countNonZero(pad));
-}
-
 double median_within(const cv::Mat_<float>& values, const cv::Mat_<uchar>& pad) {
   std::vector<double> inside;
   for (int i = 0; i < values.rows; i += 2) {
@@ -123,7 +113,7 @@ void tell_exposure(const std::string& place, const Light& light, Findings& findi
   for (const auto& [frame, why] : light.damaged) {
     findings.push_back({why, "it is left out", "Copy the picture again, or delete it."});
   }
-  if (light.saturated > 0.01) {
+  if (light.saturated > most_saturated) {
     findings.push_back({place, "up to " + percent(light.saturated) + " of the pad is saturated",
                         "Shorten the exposure or reduce the light."});
   }

@@ -40,7 +40,8 @@ struct FrameRow {
   bool has_dots = false;
   bool has_curves = false;  ///< for forces by look-up
   bool has_rim = false;     ///< for the six axes
-  bool compressed = false;  ///< unlike the reference, or much: depth errs by up to 0.1 mm
+  /// "compressed", unlike the reference or much, or "saturated": depth errs by 0.1 mm or more.
+  const char* picture_fault = nullptr;
   /// Its stick ratio is that of dots and friction together. A dots-only recording has that of the
   /// dots alone.
   fingerpad::FingertipResult touch;
