@@ -5,9 +5,8 @@
 
 many.py PROGRAM PRESS [--mpirun FILE] [--recordings N] [--kills N]
 
-1. N small recordings, some of them broken, two too long. One process and several, 1, 2 (with more
-   than one kill) and 4 ranks, split and not, write the same bytes. Only the broken recordings are
-   reported, each with its reason.
+1. N small recordings, some of them broken. One process and several, 1, 2 (with more than one kill)
+   and 4 ranks write the same bytes. Only the broken recordings are reported, each with its reason.
 2. Kills of a unit's process, a rank, the leader, or mpirun with all processes, at N random moments
    each. The same command continues, the final result is the same as without kills, and no finished
    recording is processed again. With --kills 1, one process is killed as the leader only, and three
@@ -104,7 +103,7 @@ def write_recordings(folder, press, count):
 
 def files_of(folder):
     """All files below `folder`, except those of the run itself."""
-    own = ("lock", "aside", "parts", "options.txt")
+    own = ("lock", "aside", "options.txt")
     return {
         p.relative_to(folder)
         for p in folder.rglob("*")
@@ -164,16 +163,15 @@ class Test:
             lines = [(row["recording"], row["frame"]) for row in csv.DictReader(file)]
         self.expect(len(lines) == len(set(lines)), "a frame is in all_frames.csv twice")
         self.expect(len(lines) == sum(int(row["frames"]) for row in rows.values()), "frames lack")
-        for folder in ("aside", "parts"):
-            left = [p for p in out.glob(folder + "/**/*") if p.is_file()]
-            self.expect(not left, f"left behind: {left}")
+        left = [p for p in out.glob("aside/**/*") if p.is_file()]
+        self.expect(not left, f"left behind: {left}")
 
     def same_bytes(self):
         self.one = self.work / "one"
         seconds, _ = self.run(self.one, 0, "--jobs", "1")
         self.check_whole(self.one)
         print(f"{self.good} recordings, 1 process: {seconds:.1f} s", flush=True)
-        others = {"2 processes, split": (0, "--jobs", "2", "--split", "2")}
+        others = {"2 processes": (0, "--jobs", "2")}
         if self.mpirun:
             others |= {f"{n} ranks": (n,) for n in ((1, 4) if self.kills == 1 else (1, 2, 4))}
         for name, how in others.items():
@@ -217,7 +215,7 @@ class Test:
             return
         while kills < self.kills:
             process = subprocess.Popen(
-                self.command(out, ranks, "--split", "2"),
+                self.command(out, ranks),
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
                 start_new_session=True,
@@ -258,7 +256,7 @@ class Test:
         for file in (out / "failed").rglob("*.txt"):
             killed = "its process died: Killed, 3 times" in file.read_text()
             self.expect(killed or file.stem in BROKEN, f"{file}: {file.read_text()}")
-        self.run(out, ranks, "--split", "2", "--retry")
+        self.run(out, ranks, "--retry")
         self.expect_like_one(out, kind)
         shutil.rmtree(out)
 

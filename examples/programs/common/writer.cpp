@@ -45,9 +45,7 @@ void Writer::operator()(Scene scene) {
       }
     }
   }
-  const bool has_files = !options_.files || (scene.frame >= options_.files->first &&
-                                             scene.frame < options_.files->last.value_or(total_));
-  if (options_.raw && painter_ && has_files) {
+  if (options_.raw && painter_) {
     write_depth_image(file("depth", "", scene, ".tiff"), scene.depth_mm);
     write_png(file("contact", "", scene, ".png"), scene.contact_mask);
   }
@@ -55,9 +53,7 @@ void Writer::operator()(Scene scene) {
     if (painter_) {
       scene.section = painter_->find_section(scene.depth_mm);
     }
-    if (has_files) {
-      write_pictures(scene);
-    }
+    write_pictures(scene);
     if (painter_ && is_chosen(static_cast<int>(rows_.size()) - 1, total_, montage_columns)) {
       columns_.push_back(std::move(scene));
     }

@@ -28,7 +28,6 @@ struct Options {
   std::filesystem::path out;
   std::optional<int> smoothing_px;  ///< empty: that of sensor.json, else 1
   Range range;
-  std::optional<Range> files;  ///< frames that get their own files; empty: all
   bool raw = false;
   bool pictures = true;
 };

@@ -52,11 +52,12 @@ class Progress {
     }
     shown_ = now;
     const double rate = size_ended_ / spent.count();
-    std::fprintf(stderr,
-                 "%s%d of %d recordings done, %d failed, %.3g per minute on %d processes, %.0f s left%s",
-                 in_terminal_ ? "\r\033[K" : "", units_ended_, units_, failed_,
-                 60 * units_ended_ / spent.count(), workers_,
-                 rate > 0 ? (size_ - size_ended_) / rate : 0, in_terminal_ ? "" : "\n");
+    std::fprintf(
+        stderr,
+        "%s%d of %d recordings done, %d failed, %.3g per minute on %d processes, %.0f s left%s",
+        in_terminal_ ? "\r\033[K" : "", units_ended_, units_, failed_,
+        60 * units_ended_ / spent.count(), workers_, rate > 0 ? (size_ - size_ended_) / rate : 0,
+        in_terminal_ ? "" : "\n");
   }
 
   int workers_;
@@ -120,14 +121,9 @@ class Work {
   void take(const Report& report) {
     Entry& entry = units_[report.unit];
     switch (report.end) {
-      case End::done: {
-        const Unit unit = entry.unit;
-        for (Unit& next : job_.done(unit)) {
-          add(std::move(next));
-        }
-        progress_.ended(unit, true);
+      case End::done:
+        progress_.ended(entry.unit, true);
         return;
-      }
       case End::no_room:
         stop_ = report.reason;
         again(report.unit);

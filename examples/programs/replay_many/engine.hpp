@@ -13,8 +13,6 @@ namespace replay_many {
 
 /// Callbacks for units that have ended.
 struct Job {
-  /// Returns the units that become possible now; may be empty.
-  std::function<std::vector<Unit>(const Unit& unit)> done;
   /// Records the final failure of a unit with its reason.
   std::function<void(const Unit& unit, const std::string& reason)> failed;
   /// Whether the leader sees the input that a unit did not see; then the unit's machine is at

@@ -29,7 +29,7 @@ using replay_many::Path;
 
 struct Arguments {
   Path recordings, out;
-  replay_many::Settings settings;
+  bool raw = false, pictures = true;
   int jobs = 0;  ///< 0: one per core, or one per rank
   bool retry = false;
 };
@@ -67,15 +67,15 @@ bool worked_off(Crew& crew, std::vector<replay_many::Unit> units, const replay_m
 }
 
 int lead(Crew& crew, const Arguments& arguments) {
-  replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.settings);
+  replay_many::Recordings recordings(arguments.recordings, arguments.out, arguments.raw,
+                                     arguments.pictures);
   replay::make_folders(arguments.out);
   lock(arguments.out);
   std::filesystem::remove_all(arguments.out / "aside");
   replay::make_folders(arguments.out / "aside");
-  const auto& replay = arguments.settings.replay;
-  expects_same(
-      arguments.out / "options.txt",
-      std::string(replay.pictures ? "pictures" : "no pictures") + (replay.raw ? ", raw" : ""));
+  expects_same(arguments.out / "options.txt",
+               std::string(arguments.pictures ? "pictures" : "no pictures") +
+                   (arguments.raw ? ", raw" : ""));
   if (!worked_off(crew, recordings.left(arguments.retry), recordings.job())) {
     return 3;
   }
@@ -129,15 +129,9 @@ int main(int argc, char** argv) {
   app.add_option("--jobs", arguments.jobs,
                  "number of processes; default: one per core, or one per rank")
       ->check(CLI::PositiveNumber);
-  app.add_option("--split", arguments.settings.split_frames,
-                 "for recordings longer than this, write the files of single frames in parts of "
-                 "this length")
-      ->option_text("FRAMES")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_flag("--raw", arguments.settings.replay.raw, "as for replay");
+  app.add_flag("--raw", arguments.raw, "as for replay");
   app.add_flag_callback(
-      "--no-pictures", [&] { arguments.settings.replay.pictures = false; }, "as for replay");
+      "--no-pictures", [&] { arguments.pictures = false; }, "as for replay");
   app.add_flag("--retry", arguments.retry, "process failed recordings again");
   app.footer(
       "Exit status: 0 all done, 1 some failed, 2 wrong arguments, 3 stopped: the output cannot be\n"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// The work of one process: a recording, a part of one, or the parts joined.
+// The work of one process: a recording.
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,10 +10,9 @@
 #include <system_error>
 
 #include "common/failure.hpp"
-#include "common/recording.hpp"
 #include "fingerpad/core/check.hpp"
 #include "recordings.hpp"
-#include "replay/foam/recording.hpp"
+#include "replay/replay.hpp"
 
 namespace replay_many {
 namespace {
@@ -44,65 +43,20 @@ class Aside {
 
 struct Interrupted {};
 
-/// The first frame to compute for files from frame `first` on. Dots are tracked from frame to
-/// frame, so with dots all earlier frames are computed, too; without dots none.
-int warm_up(const Path& folder, int first) {
-  const replay::Sensor sensor = replay::read_sensor(folder / "sensor.json");
-  return sensor.dots || fs::exists(folder / "dots.csv") ? 0 : first;
-}
-
-/// Processes a recording and writes files for frames [first, last), or for all if last < 0.
 void do_recording(const std::vector<std::string>& arguments) {
   replay::Options options;
-  options.recording = arguments.at(1);
-  const Path out = arguments.at(2);
-  const Path place = arguments.at(3);
-  const int first = std::stoi(arguments.at(4));
-  const int last = std::stoi(arguments.at(5));
-  for (std::size_t k = 6; k < arguments.size(); ++k) {
+  options.recording = arguments.at(0);
+  const Path out = arguments.at(1);
+  for (std::size_t k = 3; k < arguments.size(); ++k) {
     options.raw = options.raw || arguments[k] == "--raw";
     options.pictures = options.pictures && arguments[k] != "--no-pictures";
-  }
-  const bool is_part = last >= 0;
-  if (is_part) {
-    options.files = {first, last};
-  }
-  if (last > first) {
-    options.range = {warm_up(options.recording, first), last};
   }
   const Aside aside(out);
   options.out = aside.growing();
   if (replay::run(options) != 0) {
     throw Interrupted();
   }
-  replay::publish_folder(options.out, place);
-}
-
-bool is_of_a_frame(const Path& file) {
-  const std::string stem = file.stem().string();
-  return stem.size() >= 6 && stem.find_first_not_of("0123456789", stem.size() - 6) == stem.npos;
-}
-
-/// Joins parts: the first has the tables and charts, the others add the files of their frames.
-void join_parts(const std::vector<std::string>& arguments) {
-  const Path out = arguments.at(1);
-  const Path place = arguments.at(2);
-  const Aside aside(out);
-  const Path whole = aside.growing();
-  fs::create_directory(whole);
-  for (std::size_t k = 3; k < arguments.size(); ++k) {
-    const Path part = arguments[k];
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(part)) {
-      const Path to = whole / entry.path().lexically_relative(part);
-      if (entry.is_directory()) {
-        fs::create_directories(to);
-      } else if (k == 3 || is_of_a_frame(to)) {
-        fs::create_hard_link(entry.path(), to);  // parts stay complete until the whole is in place
-      }
-    }
-  }
-  replay::publish_folder(whole, place);
-  fs::remove_all(Path(arguments.at(3)).parent_path());
+  replay::publish_folder(options.out, arguments.at(2));
 }
 
 /// The free space on the output's file system, as text.
@@ -120,8 +74,7 @@ bool is_of_output(const std::string& message, const Path& out) {
 }  // namespace
 
 int run_unit(const std::vector<std::string>& arguments) {
-  const bool joins = arguments.at(0) == "join";
-  const Path out = arguments.at(joins ? 1 : 2);
+  const Path out = arguments.at(1);
   const auto ended = [&](End end, const std::string& why) {
     std::fprintf(stderr, "%s%s\n", why.c_str(), end == End::no_room ? room_in(out).c_str() : "");
     return static_cast<int>(end);
@@ -131,10 +84,10 @@ int run_unit(const std::vector<std::string>& arguments) {
   };
   try {
     cv::setNumThreads(1);  // the other cores process other units
-    if (std::error_code error; !joins && !fs::is_directory(arguments.at(1), error)) {
-      return ended(End::missing, arguments[1] + ": there is no such folder");
+    if (std::error_code error; !fs::is_directory(arguments[0], error)) {
+      return ended(End::missing, arguments[0] + ": there is no such folder");
     }
-    joins ? join_parts(arguments) : do_recording(arguments);
+    do_recording(arguments);
     return static_cast<int>(End::done);
   } catch (const replay::Failure& failure) {
     return ended(fault_of(failure.what()), failure.what());

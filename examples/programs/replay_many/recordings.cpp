@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "common/failure.hpp"
-#include "common/sensor.hpp"
 
 namespace replay_many {
 namespace {
@@ -30,14 +29,10 @@ bool is_recording(const Path& folder) {
          fs::exists(folder / "taxels.csv", ignored) || fs::exists(folder / "frames", ignored);
 }
 
-std::string range_name(int first, int last) {
-  return std::to_string(first) + "-" + std::to_string(last);
-}
-
 }  // namespace
 
-Recordings::Recordings(Path input, Path out, Settings settings)
-    : input_(fs::absolute(input)), out_(fs::absolute(out)), settings_(std::move(settings)) {
+Recordings::Recordings(Path input, Path out, bool raw, bool pictures)
+    : input_(fs::absolute(input)), out_(fs::absolute(out)), raw_(raw), pictures_(pictures) {
   device_ = device_of(input_);
   if (device_ == 0) {
     replay::fail(input_, "there is no such folder; check that it is mounted");
@@ -93,7 +88,6 @@ void Recordings::look_into(const Path& folder, const std::string& name) {
     std::error_code ignored;
     if (frame.is_regular_file(ignored) && frame.path().filename().string().front() != '.') {
       found.bytes += static_cast<double>(frame.file_size(ignored));
-      ++found.frames;
     }
   }
   all_.push_back(std::move(found));
@@ -120,77 +114,20 @@ std::vector<Unit> Recordings::left(bool retry) {
       job().failed({found.name, {}, 0}, found.refused);
       continue;
     }
-    for (Unit& unit : units_of(found)) {
-      units.push_back(std::move(unit));
-    }
+    units.push_back(unit_of(found));
   }
   return units;
 }
 
-/// Only files of single frames are worth splitting: tables need all frames in sequence.
-bool Recordings::is_split(const Found& found) const {
-  if (found.frames <= settings_.split_frames ||
-      !(settings_.replay.pictures || settings_.replay.raw)) {
-    return false;
+Unit Recordings::unit_of(const Found& found) const {
+  Unit unit{found.name,
+            {found.folder.string(), out_.string(), place_of(found.name).string()},
+            found.bytes};
+  if (raw_) {
+    unit.arguments.emplace_back("--raw");
   }
-  try {
-    const replay::Sensor sensor = replay::read_sensor(found.folder / "sensor.json");
-    return !sensor.dots_only && !sensor.video;
-  } catch (const replay::Failure&) {
-    return false;  // its unit reports the reason
-  }
-}
-
-std::vector<std::string> Recordings::options() const {
-  std::vector<std::string> words;
-  if (settings_.replay.raw) {
-    words.emplace_back("--raw");
-  }
-  if (!settings_.replay.pictures) {
-    words.emplace_back("--no-pictures");
-  }
-  return words;
-}
-
-std::vector<Unit> Recordings::units_of(const Found& found) {
-  const auto unit = [&](const Path& place, int first, int last, double size) {
-    Unit made{found.name,
-              {"recording", found.folder.string(), out_.string(), place.string(),
-               std::to_string(first), std::to_string(last)},
-              size};
-    for (std::string& word : options()) {
-      made.arguments.push_back(std::move(word));
-    }
-    return made;
-  };
-  if (!is_split(found)) {
-    return {unit(place_of(found.name), 0, -1, found.bytes)};
-  }
-  std::vector<Unit> units;
-  const Path parts = out_ / "parts" / found.name;
-  replay::make_folders(parts);
-  const auto add = [&](int first, int last, double size) {
-    const Path place = parts / range_name(first, last);
-    if (std::error_code error; !fs::exists(place, error)) {
-      units.push_back(unit(place, first, last, size));
-    }
-  };
-  add(0, 0, found.bytes);
-  for (int first = 0; first < found.frames; first += settings_.split_frames) {
-    const int last = (std::min)(first + settings_.split_frames, found.frames);
-    add(first, last, found.bytes * (last - first) / found.frames);
-  }
-  parts_left_[found.name] = static_cast<int>(units.size());
-  return units.empty() ? std::vector<Unit>{join_of(found)} : units;
-}
-
-Unit Recordings::join_of(const Found& found) const {
-  Unit unit{found.name, {"join", out_.string(), place_of(found.name).string()}, found.bytes};
-  const Path parts = out_ / "parts" / found.name;
-  unit.arguments.push_back((parts / range_name(0, 0)).string());
-  for (int first = 0; first < found.frames; first += settings_.split_frames) {
-    const int last = (std::min)(first + settings_.split_frames, found.frames);
-    unit.arguments.push_back((parts / range_name(first, last)).string());
+  if (!pictures_) {
+    unit.arguments.emplace_back("--no-pictures");
   }
   return unit;
 }
@@ -209,13 +146,6 @@ Job Recordings::job() {
         [](const Found& found, const std::string& name) { return found.name < name; });
   };
   Job job;
-  job.done = [this, found_of](const Unit& unit) {
-    const auto parts = parts_left_.find(unit.name);
-    if (unit.arguments.front() == "join" || parts == parts_left_.end() || --parts->second > 0) {
-      return std::vector<Unit>();
-    }
-    return std::vector<Unit>{join_of(*found_of(unit))};
-  };
   job.failed = [this](const Unit& unit, const std::string& reason) {
     replay::make_folders(failure_file(unit.name).parent_path());
     replay::write_file(failure_file(unit.name), reason + "\n");

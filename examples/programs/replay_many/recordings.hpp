@@ -1,42 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 #pragma once
-// Splits a folder of recordings into units of work. The output consists of:
+// Turns a folder of recordings into units of work. The output consists of:
 //   DIR/recordings/NAME/  the output of replay; a recording is done if this exists
 //   DIR/failed/NAME.txt   the reason of a failure
-//   DIR/parts/NAME/PART/  parts of a long recording, until all parts exist
 //   DIR/aside/            temporary files
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/whole_files.hpp"
 #include "engine.hpp"
-#include "replay/replay.hpp"
 
 namespace replay_many {
 
 using Path = std::filesystem::path;
 
-/// How recordings are processed; `recording`, `out` and the frames belong to each unit.
-struct Settings {
-  replay::Options replay;
-  int split_frames =
-      2000;  ///< longer recordings with files for each frame are split into parts of this size
-};
-
 class Recordings {
  public:
   /// Finds the recordings in `input`; throws replay::Failure if there are none.
-  Recordings(Path input, Path out, Settings settings);
+  /// `raw` and `pictures` are those of replay.
+  Recordings(Path input, Path out, bool raw, bool pictures);
 
   struct Found {
     std::string name;  ///< path relative to the input
     Path folder;
     double bytes = 0;
-    int frames = 0;            ///< 0 if there is no folder of frames
     std::string refused = {};  ///< why it cannot be read
   };
   const std::vector<Found>& all() const { return all_; }  ///< sorted by name
@@ -51,18 +41,14 @@ class Recordings {
 
  private:
   void look_into(const Path& folder, const std::string& name);
-  bool is_split(const Found& found) const;
-  std::vector<Unit> units_of(const Found& found);
-  Unit join_of(const Found& found) const;
-  std::vector<std::string> options() const;
+  Unit unit_of(const Found& found) const;
   Path failure_file(const std::string& name) const { return out_ / "failed" / (name + ".txt"); }
   void expects_input() const;
 
   Path input_, out_;
-  Settings settings_;
+  bool raw_, pictures_;
   std::vector<Found> all_;
-  std::map<std::string, int> parts_left_;  ///< of split recordings in progress
-  unsigned long long device_ = 0;          ///< device of the input's file system
+  unsigned long long device_ = 0;  ///< device of the input's file system
 };
 
 /// Runs a unit with these arguments in its own process. Returns the exit status, a value of End,
