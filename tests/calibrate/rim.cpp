@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
 // The membrane's modulus, from apexes of inflated caps whose truth follows from the energy alone
-// (tests/support/inflated_rubber.hpp), and from a weight on finite-element membranes.
+// (tests/support/inflated_rubber.hpp).
 #include "fingerpad/calibrate/rim.hpp"
 
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "support/generators.hpp"
 #include "support/inflated_rubber.hpp"
 #include "support/numbers.hpp"
+#include "support/pad.hpp"
 #include "support/refusal.hpp"
-#include "support/rim_marks.hpp"
 
 using namespace fingerpad;
 using test::InflatedRubber;
