@@ -408,12 +408,29 @@ TEST_CASE("cases: an array that reads more than nothing when nothing touches it"
   const Array held([&](int k, Array::Cells& cells) { shift(k, cells, 0); });
   CHECK(has(held.checked(), "does not change with the load"));
   CHECK(has(held.refusal(), "does not change with the load"));
-  const Array free_first([&](int k, Array::Cells& cells) { shift(k, cells, 90); });
-  for (const char* name : {"finger0_center_x_mm", "finger1_center_y_mm"}) {
-    CHECK(free_first.last(name, 40) == Approx(plain_array().last(name, 40)).margin(0.02));
+  for (const int free_samples : {90, 60, 35}) {
+    for (const bool below : {false, true}) {
+      CAPTURE(free_samples, below);
+      const Array free_first([&](int k, Array::Cells& cells) {
+        shift(k, cells, free_samples);
+        for (std::size_t c = 2; c < cells.size(); ++c) {
+          cells[c] = number(std::stod(cells[c]) - (below ? 300 : 0));
+        }
+      });
+      for (const char* name : {"finger0_center_x_mm", "finger1_center_y_mm"}) {
+        CHECK(free_first.last(name, 40) == Approx(plain_array().last(name, 40)).margin(0.02));
+      }
+      CHECK(free_first.last("finger0_sum", 40) ==
+            Approx(plain_array().last("finger0_sum", 40)).epsilon(0.01));
+    }
   }
-  CHECK(free_first.last("finger0_sum", 40) ==
-        Approx(plain_array().last("finger0_sum", 40)).epsilon(0.01));
+  const Array set_under_load([&](int, Array::Cells& cells) {
+    for (std::size_t c = 2; c < cells.size(); ++c) {
+      cells[c] = number(std::stod(cells[c]) - 220);
+    }
+  });
+  CHECK(has(set_under_load.checked(), "set to zero under a load"));
+  CHECK(has(set_under_load.refusal(), "set to zero under a load"));
 }
 
 TEST_CASE("cases: an array that holds an object still") {
@@ -429,15 +446,40 @@ TEST_CASE("cases: an array that holds an object still") {
   }
 }
 
-TEST_CASE("cases: taxels that spike, are stuck, or read full scale are told and left out") {
-  const std::string bad = GENERATE(as<std::string>(), "spikes", "full scale", "do not change");
+TEST_CASE("cases: taxels that spike, drift, are stuck, or read full scale are told and left out") {
+  const std::string bad =
+      GENERATE(as<std::string>(), "spikes", "drift", "full scale", "do not change");
   const Array array([&](int k, Array::Cells& cells) {
     std::string& cell = cells[10];
-    cell = bad == "spikes" ? (k % 50 == 49 ? "4000" : cell) : bad == "full scale" ? "4095" : "801";
+    cell = bad == "spikes"       ? (k % 50 == 49 ? "4000" : cell)
+           : bad == "drift"      ? number(std::stod(cell) + 3 * k)
+           : bad == "full scale" ? "4095"
+                                 : "801";
   });
   INFO(bad);
   CHECK(has(array.checked(), bad));
   CHECK(array.last("finger0_taxels_left_out", 50) == 1);
+}
+
+TEST_CASE("cases: a full scale that nobody has stated is told") {
+  for (const double full : {1000.0, 1023.0, 0.25}) {
+    const Array array([&](int, Array::Cells& cells) {
+      for (std::size_t c = 2; c < cells.size(); ++c) {
+        const double reading = std::stod(cells[c]);
+        cells[c] = number((std::min)(full, full < 1 ? reading / 4095 : reading));
+      }
+    });
+    test::replace_in(array.folder() / "sensor.json", "\"saturated_at\": 4095,", "");
+    CHECK(has(array.checked(), "are at full scale, " + number(full)));
+  }
+}
+
+TEST_CASE("cases: a quiet part in which nothing changes is refused, and named by --check") {
+  const Array array([](int k, Array::Cells& cells) {
+    std::fill(cells.begin() + 2, k < 100 ? cells.end() : cells.begin() + 2, "0");
+  });
+  CHECK(has(array.refusal(), "foam.quiet_until_s"));
+  CHECK(has(array.checked(), array.refusal()));
 }
 
 namespace {

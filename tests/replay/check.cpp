@@ -480,7 +480,7 @@ const std::vector<Mistake> foam_mistakes = {
      },
      "a gap of"},
     {"a dead taxel", [](const Copy& c) { c.scale("taxels.csv", 5, 0); },
-     "1 of 64 taxels do not change while those beside them do"},
+     "300 readings of 1 taxel do not change while those beside them do"},
     {"a dead array", [](const Copy& c) { make_all(c, 0); }, "64 of 64 taxels never change"},
     {"an array dead at some reading", [](const Copy& c) { make_all(c, 517); },
      "64 of 64 taxels never change"},

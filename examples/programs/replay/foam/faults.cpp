@@ -37,7 +37,21 @@ void tell(FoamRecording& recording,
   }
 }
 
-/// Takes the largest number of a counter of 8 to 16 bit, if it is read often, for the full scale.
+/// How many taxels read `value` in so many samples in a row that no noise explains it.
+int held_at(const TaxelTable& table, double value) {
+  constexpr int samples = 8;
+  std::vector<int> now(table.taxels(), 0), longest = now;
+  for (std::size_t k = 0; k < table.readings.size(); ++k) {
+    int& run = now[k % now.size()];
+    run = table.readings[k] >= value ? run + 1 : 0;
+    longest[k % now.size()] = (std::max)(longest[k % now.size()], run);
+  }
+  return static_cast<int>(
+      std::count_if(longest.begin(), longest.end(), [](int run) { return run >= samples; }));
+}
+
+/// Takes the largest reading for the full scale if it is the largest number of a counter of 8 to 16
+/// bit and is read often, or if several taxels stay at it.
 void find_full_scale(FoamRecording& recording) {
   TaxelTable& table = recording.table;
   double& full = recording.sensor.taxels.saturated_at;
@@ -49,8 +63,11 @@ void find_full_scale(FoamRecording& recording) {
   }
   const double bits = std::log2(most + 1);
   constexpr int often = 4;
-  if (full >= 1e9 && whole && bits >= 8 && bits <= 16 && bits == std::floor(bits) &&
-      std::count(table.readings.begin(), table.readings.end(), most) >= often) {
+  const bool is_counter = whole && bits >= 8 && bits <= 16 && bits == std::floor(bits);
+  const bool is_fine = !whole || bits >= 6;  // two taxels hardly hold the same number by chance
+  if (full >= 1e9 && most > 0 &&
+      ((is_counter && std::count(table.readings.begin(), table.readings.end(), most) >= often) ||
+       (is_fine && held_at(table, most) > 1))) {
     full = most;
   }
   std::vector<int> counted(table.taxels(), 0);
@@ -117,9 +134,68 @@ Values means_of(const TaxelTable& table, const std::vector<std::size_t>& samples
   return sums;
 }
 
+/// Largest reading less the smallest of a taxel in some samples.
+double range_of(const TaxelTable& table, std::size_t taxel, std::size_t from, std::size_t to) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t sample = from; sample < to; ++sample) {
+    const double reading = table.readings[sample * table.taxels() + taxel];
+    least = std::fmin(least, reading);
+    most = std::fmax(most, reading);
+  }
+  return most > least ? most - least : 0;
+}
+
+/// Whether all taxels beside one are pressed or let go in these samples, so that it should
+/// change, too.
+bool should_change(
+    const TaxelTable& table, std::size_t taxel, std::size_t from, std::size_t to, double pressed) {
+  const int row = static_cast<int>(taxel) / table.cols, col = static_cast<int>(taxel) % table.cols;
+  bool all = true;
+  for (const auto& [i, j] :
+       {std::pair(row - 1, col), {row + 1, col}, {row, col - 1}, {row, col + 1}}) {
+    if (i >= 0 && j >= 0 && i < table.rows && j < table.cols) {
+      const auto beside = static_cast<std::size_t>(i * table.cols + j);
+      all = all && range_of(table, beside, from, to) > pressed;
+    }
+  }
+  return all;
+}
+
+/// Leaves out the longest run of equal readings of a taxel, if it should have changed in it.
+void leave_out_stuck(FoamRecording& recording) {
+  constexpr std::size_t shortest = 60;  // samples, in which a taxel that is held still may rest
+  TaxelTable& table = recording.table;
+  const std::size_t n = table.taxels(), samples = table.frames.size();
+  const double pressed = 0.05 * largest_reading(table);
+  std::vector<int> counted(n, 0);
+  for (std::size_t taxel = 0; taxel < n; ++taxel) {
+    std::size_t from = 0, to = 0;
+    for (std::size_t since = 0, k = 1; k <= samples; ++k) {
+      const double before = table.readings[(k - 1) * n + taxel];
+      if (k == samples || !(table.readings[k * n + taxel] == before)) {
+        if (std::isfinite(before) && k - since > to - from) {
+          from = since;
+          to = k;
+        }
+        since = k;
+      }
+    }
+    if (to > from && (to - from >= shortest || to - from == samples) &&
+        table.readings[from * n + taxel] < recording.sensor.taxels.saturated_at &&
+        should_change(table, taxel, from, to, pressed)) {
+      counted[taxel] = static_cast<int>(to - from);
+    }
+    for (std::size_t k = from; k < to && counted[taxel] > 0; ++k) {
+      table.readings[k * n + taxel] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  tell(recording, counted, "do not change while those beside them do, and are left out",
+       "Check whether they are dead, saturated or disconnected, or leave out their fingers.");
+}
+
 /// The line y = offset + slope x.
 struct Line {
-  double offset = 0, offset_sd = 0, correlation = 0;
+  double offset = 0, slope = 0, offset_sd = 0, correlation = 0;
 };
 
 Line line_through(const Values& x, const Values& y) {
@@ -136,11 +212,60 @@ Line line_through(const Values& x, const Values& y) {
     return {};
   }
   const double residual = std::fmax(yy - xy * xy / xx, 0) / (n - 2);
-  return {my - xy / xx * mx, std::sqrt(residual * (1 / n + mx * mx / xx)), xy / std::sqrt(xx * yy)};
+  return {my - xy / xx * mx, xy / xx, std::sqrt(residual * (1 / n + mx * mx / xx)),
+          xy / std::sqrt(xx * yy)};
 }
 
 double sum_of(const Values& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// Leaves out taxels that drift evenly beside what they share with the load on the others, by far
+/// more than others do.
+void leave_out_drifting(FoamRecording& recording) {
+  TaxelTable& table = recording.table;
+  const std::size_t n = table.taxels(), samples = table.frames.size();
+  const auto at = [&](std::size_t sample, std::size_t taxel) {
+    const double reading = table.readings[sample * n + taxel];
+    return std::isfinite(reading) ? reading : 0;
+  };
+  Values sums(samples, 0), time(samples), drift(n, 0), of_pressed;
+  for (std::size_t k = 0; k < samples; ++k) {
+    time[k] = static_cast<double>(k) / static_cast<double>(samples);
+    for (std::size_t taxel = 0; taxel < n; ++taxel) {
+      sums[k] += at(k, taxel);
+    }
+  }
+  const double least = 0.05 * largest_reading(table);
+  std::vector<int> counted(n, 0);
+  for (std::size_t taxel = 0; taxel < n; ++taxel) {
+    Values others(samples), own(samples), later(samples);
+    for (std::size_t k = 0; k < samples; ++k) {
+      own[k] = at(k, taxel);
+      others[k] = sums[k] - own[k];
+    }
+    const Line by_load = line_through(others, own), by_time = line_through(others, time);
+    for (std::size_t k = 0; k < samples; ++k) {
+      own[k] -= by_load.slope * others[k];
+      later[k] = time[k] - by_time.slope * others[k];
+    }
+    const Line rest = line_through(later, own);
+    drift[taxel] = std::abs(rest.slope);
+    counted[taxel] = drift[taxel] > least && std::abs(rest.correlation) > 0.95 ? 1 : 0;
+    if (range_of(table, taxel, 0, samples) > least) {
+      of_pressed.push_back(drift[taxel]);
+    }
+  }
+  const double usual = of_pressed.size() > 3 ? median_of(of_pressed) : 0;
+  for (std::size_t taxel = 0; taxel < n; ++taxel) {
+    const bool drifts = counted[taxel] > 0 && of_pressed.size() > 3 && drift[taxel] > 8 * usual;
+    counted[taxel] = drifts ? static_cast<int>(samples) : 0;
+    for (std::size_t k = 0; k < samples && drifts; ++k) {
+      table.readings[k * n + taxel] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  tell(recording, counted, "drift while the others do not, and are left out",
+       "Let the array warm up, or leave out the fingers of these taxels.");
 }
 
 void take_off(FoamRecording& recording, const Values& zero, const std::string& when) {
@@ -215,12 +340,13 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
     take_off(recording, means_of(table, order), "until foam.free_until_s");
     return;
   }
-  const std::size_t first_ones =
+  const std::size_t most_first =
       (std::min)(4 * static_cast<std::size_t>(sensor.taxels.window), samples / 3);
-  if (first_ones < 8) {
+  constexpr std::size_t least_first = 8;
+  if (most_first < least_first) {
     return;
   }
-  const Values first = means_of(table, {order.begin(), order.begin() + std::ptrdiff_t(first_ones)});
+  Values first = means_of(table, {order.begin(), order.begin() + std::ptrdiff_t(least_first)});
   Values sums, steps;
   for (std::size_t k = 0; k < samples; ++k) {
     double sum = 0;
@@ -234,6 +360,13 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
     sums.push_back(sum);
   }
   const double noise = steps.empty() ? 0 : median_of(steps);  // about one standard deviation
+  const double least = 3 * noise * std::sqrt(static_cast<double>(n));
+  const double at_start = median_of(Values(sums.begin(), sums.begin() + least_first));
+  std::size_t first_ones = least_first;  // until the load rises
+  while (first_ones < most_first && sums[first_ones] - at_start < least) {
+    ++first_ones;
+  }
+  first = means_of(table, {order.begin(), order.begin() + std::ptrdiff_t(first_ones)});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return sums[a] < sums[b]; });
   const auto tenth = static_cast<std::ptrdiff_t>((std::max)(samples / 10, std::size_t{4}));
@@ -244,12 +377,13 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
     rise.push_back(high[k] - first[k]);
     change.push_back(high[k] - low[k]);
   }
-  const double least = 3 * noise * std::sqrt(static_cast<double>(n));
   const double most = largest_reading(table);
+  const double below = *std::min_element(low.begin(), low.end());
   const Line started = line_through(rise, first), held = line_through(change, high);
   if (sum_of(rise) > 10 * least && sum_of(first) - sum_of(low) < least + 0.02 * sum_of(rise) &&
       std::abs(started.correlation) < 0.5) {
-    if (*std::max_element(first.begin(), first.end()) > 3 * noise) {
+    const auto [lowest, highest] = std::minmax_element(first.begin(), first.end());
+    if (std::fmax(*highest, -*lowest) > 3 * noise) {
       take_off(recording, first, "in the first samples, before anything touches them");
     }
     take_off_drift(recording, first_ones, rise, noise);
@@ -260,6 +394,12 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
              " that does not change with the load, so the array was not set to zero, and the "
              "object is held from the first sample on; record a second before anything touches "
              "the array, and set foam.free_until_s in sensor.json to its end");
+  } else if (below < -(3 * noise + 0.02 * most)) {
+    fail(folder / "taxels.csv",
+         "a taxel reads " + number(below) +
+             ", and a load is never below 0, so the array was set to zero under a load; record a "
+             "second before anything touches the array, and set foam.free_until_s in sensor.json "
+             "to its end");
   }
 }
 
@@ -268,10 +408,9 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
 void repair_readings(const std::filesystem::path& folder, FoamRecording& recording) {
   find_full_scale(recording);
   leave_out_spikes(recording);
+  leave_out_stuck(recording);
+  leave_out_drifting(recording);
   set_zero(folder, recording);
-  recording.table.missing =
-      std::count_if(recording.table.readings.begin(), recording.table.readings.end(),
-                    [](double reading) { return !std::isfinite(reading); });
 }
 
 }  // namespace replay
