@@ -237,6 +237,34 @@ TEST_CASE("wrench: the answer does not depend on where the fit begins", "[wrench
   }
 }
 
+TEST_CASE("wrench: what sd_px says is corrected by the residuals of the last frames", "[wrench]") {
+  // a printed grid that ends a quarter of the radius from the rim
+  const RimScene& s = scene("mix");
+  const double share = GENERATE(0.5, 6.0);
+  SeenRim rim(s, SeenRim::options_of(s, true), 0.02, 7);
+  auto other = rim.wrench;
+  for (std::size_t frame = 0; frame < 24; ++frame) {
+    const std::size_t k = frame < 20 ? 0 : frame - 20;
+    rim.show(k);
+    auto marks = rim.marks;
+    std::erase_if(marks, [&](const Mark& m) { return m.arc_mm < 0.27 * s.cap.base_radius_mm; });
+    const auto told = rim.wrench(marks, s.frames[k].pressure_mpa);
+    for (Mark& mark : marks) {
+      mark.sd_px *= share;
+    }
+    const auto mistold = other(marks, s.frames[k].pressure_mpa);
+    CAPTURE(share, k);
+    REQUIRE(mistold.has_force());
+    const auto a = parts(told), b = parts(mistold);
+    for (Eigen::Index i = 0; i < 6 && frame >= 20; ++i) {
+      const auto part = static_cast<std::size_t>(i);
+      const double sd = std::sqrt(told.covariance(i, i));
+      CHECK(std::fabs(a[part] - b[part]) < 0.3 * sd);
+      CHECK(std::fabs(std::sqrt(mistold.covariance(i, i)) / sd - 1) < 0.1);
+    }
+  }
+}
+
 TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   int within = 0, all = 0;
   double worst = 0;

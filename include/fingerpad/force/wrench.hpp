@@ -126,9 +126,10 @@ class Wrench {
       // set off by that times its slope
       const double bend_mm = 0.3, slope = 0.3 / std::pow((std::max)(1.0, harmonic), 1.5);
       const double offset_mm = harmonic > 0 ? bend_mm * slope : bend_mm;
-      weight_.push_back(1 / square(is_offset ? offset_mm : slope));
+      prior_.push_back(1 / square(is_offset ? offset_mm : slope));
     }
-    weight_.push_back(0);
+    prior_.push_back(0);
+    weight_ = prior_;
     normal_.resize(count, static_cast<Eigen::Index>(width));
     solver_ = Eigen::LLT<Eigen::MatrixXd>(count);
     gradient_.resize(count);
@@ -201,7 +202,10 @@ class Wrench {
     }
     centre_.back() = load;
     parameters_.back() = load;
-    weight_.back() = 1 / square((std::max)(options_.pressure_sd_share, 1e-6) * load);
+    prior_.back() = 1 / square((std::max)(options_.pressure_sd_share, 1e-6) * load);
+    for (std::size_t k = 0; k < weight_.size(); ++k) {
+      weight_[k] = noise_sq_ * prior_[k];
+    }
     if (!fit(0.1, 24)) {
       restart();
       if (!fit(0.05, 48)) {
@@ -212,6 +216,7 @@ class Wrench {
     }
     const double degrees = freedom();
     result.misfit = std::sqrt(misfit_ / degrees);
+    noise_sq_ += 0.25 * ((std::clamp)(misfit_ / degrees, 0.01, 10.0) - noise_sq_);
     read_load(static_cast<double>(2 * places_.size()) / degrees, free_pictures, result);
     const double press_n = std::fabs(result.force_n.z) - 2 * std::sqrt(result.covariance(2, 2));
     largest_n_ = result.misfit > 2.5 ? largest_n_ : (std::max)(largest_n_, press_n);
@@ -487,8 +492,8 @@ class Wrench {
           through(slopes_.row(row).head(gradient_.size()).transpose()));
     }
     for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
-      add(weight_[static_cast<std::size_t>(k)],
-          through(Eigen::VectorXd::Unit(gradient_.size(), k)));
+      const auto i = static_cast<std::size_t>(k);
+      add(square(weight_[i]) / prior_[i], through(Eigen::VectorXd::Unit(gradient_.size(), k)));
     }
   }
 
@@ -532,7 +537,8 @@ class Wrench {
   FreePad<double> free_;
   Annulus<double> annulus_, tangent_;  // the membrane; its slopes at at_slopes_
   bool begun_ = false, has_slopes_ = false;
-  std::vector<double> parameters_, at_slopes_, centre_, weight_, before_, of_position_;
+  std::vector<double> parameters_, at_slopes_, centre_, before_, of_position_;
+  std::vector<double> prior_, weight_;  // of the parameters, and where sd_px is not the noise
   FreeRadii free_radius_mm_ = {}, arc_by_load_mm_ = {};  // the latter with ln of the load
   detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd of_load_;  // by parameters
@@ -540,6 +546,7 @@ class Wrench {
   Eigen::VectorXd gradient_, rhs_, residuals_, weights_;
   Eigen::LLT<Eigen::MatrixXd> solver_;
   double misfit_ = 0;     // sum of squares
+  double noise_sq_ = 1;   // mean square of residuals over sd_px in the last frames
   double largest_n_ = 0;  // press so far, less two standard deviations
 };
 
