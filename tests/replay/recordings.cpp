@@ -386,8 +386,11 @@ TEST_CASE("an earlier run is replaced, anything else is left alone") {
 TEST_CASE("frames are sorted as people sort them") {
   const Workplace work;
   const fs::path folder = work.recording() / "frames";
-  const std::vector<std::string> names = {"frame2.png", "frame10.png", "frame010b.png",
-                                          "frame100.png", "left1.png"};
+  const std::vector<std::string> counted = {"frame2.png", "frame10.png", "frame010b.png",
+                                            "frame100.png", "left1.png"};
+  const std::vector<std::string> microseconds = {"0.png", "900000.png", "1e+06.png", "1.1e+06.png",
+                                                 "2.05e+06.png"};
+  const auto names = GENERATE_COPY(counted, microseconds);
   fs::rename(folder / "000000.png", folder / names[0]);
   fs::rename(folder / "000001.png", folder / names[1]);
   fs::rename(folder / "000002.png", folder / names[2]);

@@ -3,6 +3,7 @@
 #include "common/recording.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "common/failure.hpp"
 #include "common/images.hpp"
 #include "common/median.hpp"
+#include "fingerpad/core/check.hpp"
 
 namespace replay {
 namespace {
@@ -54,6 +56,22 @@ bool have_decimals(const std::vector<fs::path>& files) {
     }
   }
   return true;
+}
+
+/// 1.1e+06, as %g writes it, becomes 1100000.
+std::string without_exponents(std::string name) {
+  for (std::size_t at = name.find("e+"); at != std::string::npos; at = name.find("e+", at + 1)) {
+    std::size_t first = at;
+    while (first > 0 && (is_digit(name[first - 1]) || name[first - 1] == '.')) {
+      --first;
+    }
+    const std::size_t end = end_of_digits(name, at + 2);
+    if (is_digit(name[first]) && end > at + 2 && end < at + 5) {
+      const double number = std::strtod(name.substr(first, end - first).c_str(), nullptr);
+      name.replace(first, end - first, fingerpad::detail::print("%.0f", number));
+    }
+  }
+  return name;
 }
 
 /// Natural order: numbers in names compare by value, so frame10 comes after frame2.
@@ -108,7 +126,8 @@ FrameSource FrameSource::of_folder(const fs::path& folder, PictureFormat format)
   }
   const bool decimals = have_decimals(source.files_);
   std::sort(source.files_.begin(), source.files_.end(), [&](const fs::path& a, const fs::path& b) {
-    const std::string one = a.stem().string(), other = b.stem().string();
+    const std::string one = without_exponents(a.stem().string());
+    const std::string other = without_exponents(b.stem().string());
     return one != other ? comes_before(one, other, decimals) : a < b;
   });
   source.count_ = static_cast<int>(source.files_.size());
