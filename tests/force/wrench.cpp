@@ -147,7 +147,13 @@ TEST_CASE("wrench: lost dots, wrong labels and a print that is shifted", "[wrenc
     for (std::size_t i = 0; i < rim.marks.size(); ++i) {
       rim.marks[i].px = seen[(i + 1) % seen.size()].px;
     }
-    CHECK_FALSE(rim.wrench(rim.marks, s.frames[2].pressure_mpa).ok());
+    const auto result = rim.wrench(rim.marks, s.frames[2].pressure_mpa);
+    CHECK_FALSE(result.has_force());
+    for (const double part : parts(result)) {
+      CHECK(std::isnan(part));
+    }
+    CHECK(std::isnan(result.covariance(2, 2)));
+    CHECK(std::isnan(result.pressure_mpa));
   }
   SECTION("and the next frame is as good as ever") {
     rim.marks.resize(10);
@@ -364,6 +370,9 @@ TEST_CASE("wrench: a sheet that bends at its clamp needs a loose rim, and its th
         auto options = SeenRim::options_of(s, ways[way].is_loose);
         options.thickness_mm = ways[way].told * layer_mm / 0.94;
         SeenRim rim(s, options, 0.02, 5);
+        for (Mark& mark : rim.marks) {  // as a Fingertip says; clamped, that is a poor fit
+          mark.sd_px = ways[way].is_loose ? 0.06 : 0.2;
+        }
         for (std::size_t k = 1; k < s.frames.size(); ++k) {
           const auto result = rim.fit(k);
           CAPTURE(name, k, way, name_of(result.status));
@@ -373,9 +382,9 @@ TEST_CASE("wrench: a sheet that bends at its clamp needs a loose rim, and its th
       }
     }
     CAPTURE(layer_mm, error[0], error[1], error[2], error[3], error[4]);
-    CHECK(error[2] < 0.09 * layer_mm);
-    CHECK((std::max)(error[3], error[4]) < 0.13 * layer_mm);
-    CHECK(error[1] > 3 * error[2]);
+    CHECK(error[2] < 0.105 * layer_mm);
+    CHECK((std::max)(error[3], error[4]) < 0.155 * layer_mm);
+    CHECK(error[1] > 2.3 * error[2]);
     CHECK(error[0] > 2.5 * error[1]);
   }
 }

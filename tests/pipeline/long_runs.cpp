@@ -166,6 +166,7 @@ TEST_CASE("long runs: after lost contact an object's motion begins anew", "[long
     const auto dots = dots_in_space(any, 0.1 * k);
     const auto a = motion(dots, contact), b = fresh(dots, contact);
     CHECK(a.status == b.status);
+    REQUIRE(a.has_pose());
     CHECK(a.pose.translation_mm.x == b.pose.translation_mm.x);
     CHECK(a.pose.translation_mm.z == b.pose.translation_mm.z);
   }

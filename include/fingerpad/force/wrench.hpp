@@ -98,7 +98,7 @@ struct WrenchResult {
   double misfit = 0;  ///< residuals over sd_px, by their degrees of freedom, without outliers
   Index marks = 0;    ///< used
   bool ok() const { return status == WrenchStatus::ok; }
-  /// Also where it is in doubt.
+  /// Also where it is in doubt; else all numbers are NaN.
   bool has_force() const {
     return ok() || status == WrenchStatus::uncertain || status == WrenchStatus::not_tared;
   }
@@ -137,6 +137,7 @@ class Wrench {
     slopes_.resize(2 * options.max_marks, static_cast<Eigen::Index>(width));
     residuals_.resize(2 * options.max_marks);
     weights_.setOnes(2 * options.max_marks);
+    left_ = weights_;
     of_position_.resize(3 * width);
     of_load_.resize(static_cast<Eigen::Index>(width), 6);
     places_ = detail::ReservedVector<Seen>(static_cast<std::size_t>(options.max_marks));
@@ -214,15 +215,17 @@ class Wrench {
         return result;
       }
     }
-    const double degrees = freedom();
-    result.misfit = std::sqrt(misfit_ / degrees);
-    noise_sq_ += 0.25 * ((std::clamp)(misfit_ / degrees, 0.01, 10.0) - noise_sq_);
-    read_load(static_cast<double>(2 * places_.size()) / degrees, free_pictures, result);
+    const double square_misfit = misfit_ / freedom();
+    result.misfit = std::sqrt(square_misfit);
+    noise_sq_ += 0.25 * ((std::clamp)(square_misfit, 0.01, 10.0) - noise_sq_);
+    if (result.misfit > 2.5) {
+      result.status = WrenchStatus::poor_fit;
+      return result;
+    }
+    read_load(free_pictures, result);
     const double press_n = std::fabs(result.force_n.z) - 2 * std::sqrt(result.covariance(2, 2));
-    largest_n_ = result.misfit > 2.5 ? largest_n_ : (std::max)(largest_n_, press_n);
-    result.status = result.misfit > 2.5                  ? WrenchStatus::poor_fit
-                    : is_uncertain(result, pressure_mpa) ? WrenchStatus::uncertain
-                                                         : WrenchStatus::ok;
+    largest_n_ = (std::max)(largest_n_, press_n);
+    result.status = is_uncertain(result, pressure_mpa) ? WrenchStatus::uncertain : WrenchStatus::ok;
     return result;
   }
 
@@ -432,23 +435,24 @@ class Wrench {
     }
   }
 
-  /// Residuals less the parameters that they determine, at least 1.
+  /// Residuals less the parameters that they determine, at least 1. left_ becomes the share of its
+  /// variance that the fit leaves of each residual: less of a dot on which much depends.
   double freedom() {
-    auto count = static_cast<double>(2 * places_.size()) - static_cast<double>(weight_.size());
-    for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
-      rhs_.setZero();
-      rhs_[k] = 1;
+    double sum = 0;
+    for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
+      rhs_ = slopes_.row(row).head(gradient_.size()).transpose();
       solver_.matrixL().solveInPlace(rhs_);
-      count += weight_[static_cast<std::size_t>(k)] * rhs_.squaredNorm();
+      left_[row] = (std::max)(1 - weights_[row] * rhs_.squaredNorm(), 0.01);
+      sum += left_[row];
     }
-    return (std::max)(count, 1.0);
+    return (std::max)(sum, 1.0);
   }
 
   using Axes = Eigen::Matrix<double, 6, 1>;
 
-  /// The variance of each residual is its square times `per_square`, so that no sd_px need be
-  /// right; that of each parameter known before is what it is known to.
-  void read_load(double per_square, Index free_pictures, WrenchResult& result) {
+  /// The variance of each dot is the square of its residual over what the fit leaves of it, so that
+  /// no sd_px need be right; that of each parameter known before is what it is known to.
+  void read_load(Index free_pictures, WrenchResult& result) {
     tangent_.slopes_of_load({of_load_.data(), static_cast<std::size_t>(of_load_.size())});
     const double modulus = options_.modulus_n_per_mm, less = 0.005;
     const Axes axes = axes_after_step(modulus);
@@ -488,7 +492,7 @@ class Wrench {
           axes - by_modulus - by_load);
     }
     for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(2 * places_.size()); ++row) {
-      add(per_square * square(weights_[row] * residuals_[row]),
+      add(square(weights_[row] * residuals_[row]) / left_[row],
           through(slopes_.row(row).head(gradient_.size()).transpose()));
     }
     for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
@@ -543,7 +547,7 @@ class Wrench {
   detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd of_load_;  // by parameters
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> normal_, slopes_;
-  Eigen::VectorXd gradient_, rhs_, residuals_, weights_;
+  Eigen::VectorXd gradient_, rhs_, residuals_, weights_, left_;
   Eigen::LLT<Eigen::MatrixXd> solver_;
   double misfit_ = 0;     // sum of squares
   double noise_sq_ = 1;   // mean square of residuals over sd_px in the last frames

@@ -49,20 +49,32 @@ constexpr const char* name_of(MotionStatus status) {
   return motion_status_names[static_cast<std::size_t>(status)];
 }
 
-/// Motion of the object in a frame. Without a pose, dots_used is 0, and all else is what was last
-/// known of the object; before the first one, position is NaN.
+namespace detail {
+
+template <scalar S>
+Pose<S> missing_pose() {
+  const S none = not_a_number<S>();
+  return {{{{none, none, none}, {none, none, none}, {none, none, none}}}, missing_point<S>()};
+}
+
+}  // namespace detail
+
+/// Motion of the object in a frame. Without a pose, dots_used is 0 and all numbers of the motion
+/// are NaN.
 template <scalar S = double>
 struct [[nodiscard]] ObjectMotionResult {
   MotionStatus status = MotionStatus::no_pose;
   Index object = 0;  ///< which object: 1 for the first, one more with each that begins; 0: none yet
-  bool begun = false;      ///< it begins with this frame: the pose is the identity
-  Index dots_used = 0;     ///< dots from which the pose was computed
-  Pose<S> pose = {};       ///< x_now = R x_first + t, from the frame in which the object began
-  Angles<S> angles = {};   ///< of the pose, about z, y and x
+  bool begun = false;   ///< it begins with this frame: the pose is the identity
+  Index dots_used = 0;  ///< dots from which the pose was computed
+  /// x_now = R x_first + t, from the frame in which the object began.
+  Pose<S> pose = detail::missing_pose<S>();
+  /// Of the pose, about z, y and x.
+  Angles<S> angles = {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
   Point3<S> position_mm =  ///< of the object's point that lay at the centroid of its first dots
-      {not_a_number<S>(), not_a_number<S>(), not_a_number<S>()};
-  Point3<S> displacement_mm = {S(0), S(0), S(0)};  ///< of that point
-  S residual_rms_mm = S(0);  ///< rms distance of the dots used from the rigid motion
+      detail::missing_point<S>();
+  Point3<S> displacement_mm = detail::missing_point<S>();  ///< of that point
+  S residual_rms_mm = not_a_number<S>();  ///< rms distance of the dots used from the rigid motion
   /// Standard deviations of the position, as the length of its error, and of the angle between
   /// found and true rotation, since the object began; NaN without depth_noise_mm. The noise of a
   /// dot, or the residual if that is larger, is common to about four dots, as far as depth is
@@ -79,9 +91,8 @@ struct [[nodiscard]] ObjectMotionResult {
 /// frame. A frame allocates nothing, throws nothing, and takes O(rows cols) time.
 ///
 /// An object begins with nine dots in contact, and ends when no dot is in contact or when it
-/// slides; what is touched then is a new object with the next number. A frame with contact but
-/// without a pose keeps the last one; the object is found again as soon as three of its dots are
-/// back.
+/// slides; what is touched then is a new object with the next number. After frames with contact but
+/// without a pose the object is found again as soon as three of its dots are back.
 template <scalar S = double>
 class ObjectMotion {
  public:
@@ -116,13 +127,13 @@ class ObjectMotion {
     last_.status = MotionStatus::no_pose;
     if (dots.rows() != rows() || dots.cols() != cols() || !same_size(dots, flags) ||
         !same_size(dots, slipping)) {
-      return last_;
+      return without_pose();
     }
     frame_.read(dots);
     read(flags, slipping);
     last_.status = look(depth_noise_mm);
     estimate_errors(depth_noise_mm);
-    return last_;
+    return last_.has_pose() ? last_ : without_pose();
   }
 
   /// The same if no dot slips.
@@ -137,6 +148,13 @@ class ObjectMotion {
     S weight = S(0);    ///< of the mean; 0: not on the map
     bool left = false;  ///< found in this frame, but it does not stick
   };
+  /// last_ keeps the pose, from which the next one follows.
+  ObjectMotionResult<S> without_pose() const {
+    ObjectMotionResult<S> result;
+    result.status = last_.status;
+    result.object = last_.object;
+    return result;
+  }
   /// Lists the dots that stick, and marks those that are found but do not; missing ones may still
   /// be in contact.
   template <class Contact, class Slips>
@@ -248,7 +266,11 @@ class ObjectMotion {
     last_.object = object;
     last_.begun = has_object_ = true;
     last_.dots_used = static_cast<Index>(fresh_);
+    last_.pose = {};
+    last_.angles = {};
     last_.position_mm = start_mm_;
+    last_.displacement_mm = {S(0), S(0), S(0)};
+    last_.residual_rms_mm = S(0);
     has_slid_ = false;
     enter();
     return true;
