@@ -270,7 +270,7 @@ constexpr auto as_view(G&& g) {
 }
 template <grid G>
   requires(!std::is_lvalue_reference_v<G> && !detail::is_view<std::remove_cvref_t<G>>)
-constexpr auto as_view(G&& owner) = delete;
+constexpr auto as_view(G&& temporary) = delete;  // its view would dangle: give it a name
 
 /// Refuses impossible sizes, for which memory would run out or overflow (parameter_error): rows and
 /// cols must be in [`min`, 1e6], with at most 1e8 cells, each stored `copies` times.
@@ -294,7 +294,7 @@ auto grid_of(Cells& cells, Index rows, Index cols) {
 }
 template <detail::has_cells_in_a_row Cells>
   requires(!std::is_lvalue_reference_v<Cells>)
-auto grid_of(Cells&& temporary, Index rows, Index cols) = delete;
+auto grid_of(Cells&& temporary, Index rows, Index cols) = delete;  // would dangle: name the cells
 /// Gives std::vector<bool> a readable compile error.
 template <class Bits>
   requires(detail::has_bits_in_a_row<std::remove_cvref_t<Bits>>)
