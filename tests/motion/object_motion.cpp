@@ -221,6 +221,25 @@ TEST_CASE("object motion: standard deviations cover the error of a roll, and are
   CHECK(!is_finite(unknown.rotation_sd_rad));
 }
 
+TEST_CASE("object motion: standard deviations of dots at rest, by hand") {
+  // 4 x 5 dots 2 mm apart, wherever they lie: four have one error, and so had they at first
+  const double pitch_mm = 2, noise_mm = 0.02;
+  const Point2<double> first = GENERATE(Point2<double>{-4, -3}, Point2<double>{5, -9});
+  test::Image<Vector> dots(4, 5);
+  for (Index i = 0; i < 4; ++i) {
+    for (Index j = 0; j < 5; ++j) {
+      dots(i, j) = {first.x + pitch_mm * double(j), first.y + pitch_mm * double(i), 10};
+    }
+  }
+  const double spread_sq = square(pitch_mm) * (4 * 10 + 5 * 5);  // about their middle
+  const Flags all(4, 5, 1), none(4, 5, 0);
+  ObjectMotion<> motion(4, 5);
+  (void)motion(dots, all, none, noise_mm);
+  const auto r = motion(dots, all, none, noise_mm);
+  CHECK(r.rotation_sd_rad == Approx(noise_mm * std::sqrt(2 * 16 / spread_sq)));
+  CHECK(r.position_sd_mm == Approx(noise_mm * std::sqrt(2 * 4 / 20.0)));
+}
+
 TEST_CASE("object motion: a pose whose residual exceeds the noise is doubtful") {
   const test::RollingBall ball{.rows = 11, .cols = 11, .patch_mm = 6};
   const Flags none(11, 11, 0);
