@@ -16,6 +16,20 @@ using fingerpad::Point3;
 
 constexpr double pixel_mm = 0.005 / 0.06;
 
+/// Root mean square error of the dots found along x and along y.
+double noise_of(const Recording& r) {
+  double sum = 0, count = 0;
+  for (const Frame& f : r.frames) {
+    for (std::size_t k = 0; k < f.found.cells.size(); ++k) {
+      const Point3<double> off = f.found.cells[k] - f.place.cells[k];
+      const double sq = off.x * off.x + off.y * off.y;
+      sum += fingerpad::is_finite(sq) ? sq : 0;
+      count += fingerpad::is_finite(sq) ? 2 : 0;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
 }  // namespace
 
 Answers& Answers::operator+=(const Answers& o) {
@@ -36,7 +50,9 @@ Answers answers(const Recording& recording, const Conditions& c) {
   test::Random random(c.seed);
   const double along = c.noise_px * pixel_mm;
   const Dots& first = recording.frames.front().found;
-  fingerpad::StickRatio<> stick(first.rows(), first.cols());
+  fingerpad::StickRatio<> stick(
+      first.rows(), first.cols(),
+      {.noise = c.noise_is_given ? std::hypot(along, noise_of(recording)) : 0});
   fingerpad::FrictionLimit<> limit;
   Answers a;
   std::vector<std::size_t> seen;

@@ -9,8 +9,9 @@
 namespace stick_table {
 
 struct Conditions {
-  double noise_px = 0;  ///< added to the dots that were found; five times it to their depth
-  int every = 1;        ///< frame is seen
+  double noise_px = 0;          ///< added to the dots that were found; five times it to their depth
+  bool noise_is_given = false;  ///< to the stick ratio
+  int every = 1;                ///< frame is seen
   std::uint64_t seed = 1;
   bool prints_each = false;
 };

@@ -24,10 +24,11 @@ using stick_table::Recording;
 void print(const std::string& scene, const Conditions& c, const Answers& a) {
   const auto share = [&](int count) { return a.told > 0 ? double(count) / a.told : 0.0; };
   std::printf(
-      "| %-12s | %4.2f | %2d | %5d | %5d | %.3f | %4d | %4d | %.3f | %.3f | %.2f |"
+      "| %-12s | %4.2f | %-3s | %2d | %5d | %5d | %.3f | %4d | %4d | %.3f | %.3f | %.2f |"
       " %.2f | %.2f |\n",
-      scene.c_str(), c.noise_px, c.every, a.asked, a.told, a.mean_error(), a.missed, a.falsely,
-      share(a.within_2_sd), share(a.within_5_sd), a.mean_sd(), share(a.kept), share(a.far_apart));
+      scene.c_str(), c.noise_px, c.noise_is_given ? "yes" : "no", c.every, a.asked, a.told,
+      a.mean_error(), a.missed, a.falsely, share(a.within_2_sd), share(a.within_5_sd), a.mean_sd(),
+      share(a.kept), share(a.far_apart));
 }
 
 }  // namespace
@@ -46,9 +47,9 @@ int main(int argc, char** argv) try {
     return 0;
   }
   std::printf(
-      "| scene | noise, px | every | frames | told | mean error | missed | false |"
+      "| scene | noise, px | given | every | frames | told | mean error | missed | false |"
       " within 2 sd | within 5 sd | mean sd | kept | far apart |\n"
-      "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+      "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   const auto rows = [&](Conditions c) {
     Answers all;
     for (const Recording& r : recordings) {
@@ -61,8 +62,10 @@ int main(int argc, char** argv) try {
     }
     print("**all**", c, all);
   };
-  for (const double noise_px : {0.0, 0.03, 0.06, 0.12, 0.18}) {
-    rows({.noise_px = noise_px});
+  for (const bool given : {false, true}) {
+    for (const double noise_px : {0.0, 0.03, 0.06, 0.12, 0.18}) {
+      rows({.noise_px = noise_px, .noise_is_given = given});
+    }
   }
   for (const double noise_px : {0.0, 0.06}) {
     for (const int every : {3, 5, 10}) {

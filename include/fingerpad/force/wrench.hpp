@@ -98,7 +98,7 @@ struct WrenchResult {
   double misfit = 0;  ///< residuals over sd_px, by their degrees of freedom, without outliers
   Index marks = 0;    ///< used
   bool ok() const { return status == WrenchStatus::ok; }
-  /// Also where it is in doubt; else all numbers are NaN.
+  /// Also where it is in doubt; else force, moment, covariance and pressure are NaN.
   bool has_force() const {
     return ok() || status == WrenchStatus::uncertain || status == WrenchStatus::not_tared;
   }
