@@ -140,9 +140,8 @@ TEST_CASE("a recording gives a table and one depth map per frame") {
   std::getline(table, line);
   CHECK(line ==
         "frame,time_s,depth_status,depth_light_sd_mm,pad_changed,valid_share,depth_mean_mm,"
-        "depth_max_mm,"
-        "contact_status,contact_area_mm2,contact_area_sd_mm2,contact_depth_mm,contact_center_x_mm,"
-        "contact_center_y_mm,"
+        "depth_max_mm,contact_status,contact_area_mm2,contact_area_sd_mm2,contact_depth_mm,"
+        "contact_center_x_mm,contact_center_y_mm,"
         "motion_status,object,object_x_mm,object_y_mm,object_z_mm,"
         "rotation_x_rad,rotation_y_rad,rotation_z_rad,object_sd_mm,rotation_sd_rad,"
         "slip_status,dots_in_contact,stick_ratio,stick_ratio_updated,stick_ratio_sd,slip_evidence,"

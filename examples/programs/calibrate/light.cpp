@@ -303,8 +303,7 @@ Outcome absorption(const Path& recording, const Path& sensor_file) {
       left_mm > 0.05 && fit.red_blur > 5 * sd(fit.parameters - 1),
       "depths at known places are off by more than 0.05 mm, by noise or by a mosaic that samples "
       "the edges of dots too coarsely: c_green less c_red errs by more than its sd; use more "
-      "light, "
-      "a lens that blurs by a pixel, or a wider window");
+      "light, a lens that blurs by a pixel, or a wider window");
   const bool mixed = sd(0) > fluid.c_red_per_mm / 2;
   report.doubt(depth_sd > 0.05,
                std::string("the fit alone makes depths uncertain by more than 0.05 mm") +
