@@ -224,7 +224,8 @@ TEST_CASE("object motion: standard deviations cover the error of a roll, and are
 TEST_CASE("object motion: standard deviations of dots at rest, by hand") {
   // 4 x 5 dots 2 mm apart, wherever they lie: four have one error, and so had they at first
   const double pitch_mm = 2, noise_mm = 0.02;
-  const Point2<double> first = GENERATE(Point2<double>{-4, -3}, Point2<double>{5, -9});
+  const bool aside = GENERATE(false, true);
+  const auto first = aside ? Point2<double>{5, -9} : Point2<double>{-4, -3};
   test::Image<Vector> dots(4, 5);
   for (Index i = 0; i < 4; ++i) {
     for (Index j = 0; j < 5; ++j) {
