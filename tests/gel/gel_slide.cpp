@@ -185,7 +185,11 @@ TEST_CASE("gel slide: what it says when it cannot tell", "[gel_slide]") {
   CHECK(look({}, slide).lost == 0);
 
   const Image<double> wider(height, width + 1);
-  CHECK(slide(wider, pad.contact(), pad.dots()).status == SlideStatus::refused);
+  const SlideResult refused = slide(wider, pad.contact(), pad.dots());
+  CHECK(refused.status == SlideStatus::refused);
+  CHECK(std::isnan(refused.held()));
+  CHECK(std::isnan(refused.slide_px.x));
+  CHECK(std::isnan(refused.imprint_px.x));
   CHECK(slide(pad.imprint(), pad.contact(), Dots(5, 6)).status == SlideStatus::refused);
 }
 

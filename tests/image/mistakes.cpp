@@ -98,6 +98,7 @@ bool is_near(const Point3<double>& a, const Point3<double>& b, double mm) {
 
 /// Response of a contact, compared with the one without the mistake.
 std::string told(const ContactResult& r, const ContactResult& right) {
+  CHECK((r.ok() || std::isnan(r.area_mm2)));
   return !r.ok()                          ? name_of(r.status)
          : 2 * r.unknown_px > size * size ? "mostly unknown"
          : !r.in_contact()                ? "no contact"

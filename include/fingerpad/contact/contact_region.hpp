@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <type_traits>
@@ -62,7 +63,8 @@ inline std::string check(const ContactTest& test) {
                                {"touching_gap_mm", test.touching_gap_mm, within(0, 1)}});
 }
 
-/// The contact of a frame. Without contact, areas are 0 and all other values NaN.
+/// The contact of a frame. Without contact, areas are 0 and place and depth NaN; if the status is
+/// not ok, all of them are.
 ///
 /// `not_of_this_pad`: no pixel of the frame is known, or the mean height of the contact is a
 /// twentieth of the free apex or less, or twenty times it or more, as with depths in m.
@@ -71,16 +73,16 @@ struct [[nodiscard]] ContactResult {
   Index contact_px = 0;  ///< pixels in contact
   Index unknown_px = 0;  ///< pixels without depth, or with too few neighbours to decide
   Index regions = 0;     ///< connected parts of the contact
-  double area_mm2 = 0;   ///< of the contact, at its depth, projected on the plate
+  double area_mm2 = not_a_number<double>();  ///< at the contact's depth, projected on the plate
   /// Standard deviation of the area: the touching gap, as a rigid object touches nothing of it, and
   /// the edge as the noise of the free membrane's curvature moves it. Where the edge is not placed,
   /// it may lie anywhere within the ring's radius.
-  double area_sd_mm2 = 0;
+  double area_sd_mm2 = not_a_number<double>();
   /// The area, of each region by the share of the fluid's pressure that the object takes: all of it
   /// where it is flat, the less the more it bulges with the membrane. Times the pressure this is
   /// what the object presses with, without the membrane's pull around it. Where the edge is not
   /// placed, all of the area.
-  double pressed_mm2 = 0;
+  double pressed_mm2 = not_a_number<double>();
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
                               not_a_number<double>()};  ///< centroid of that area
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
@@ -152,6 +154,7 @@ class ContactRegion {
     if (!has_size(depth) || !has_size(to)) {
       return result;
     }
+    result.area_mm2 = result.area_sd_mm2 = result.pressed_mm2 = 0;
     const auto statistic = image_.view(statistic_.data());
     const auto raw = image_.view(raw_.data());
     const auto marks = regions_.marks();
@@ -184,7 +187,10 @@ class ContactRegion {
     if (result.in_contact()) {
       result.pressed_mm2 = result.area_mm2 * pressed_px / static_cast<double>(result.contact_px);
     }
-    result.status = is_of_this_pad(result) ? FrameStatus::ok : FrameStatus::not_of_this_pad;
+    if (!is_of_this_pad(result)) {
+      return {FrameStatus::not_of_this_pad, result.contact_px, result.unknown_px, result.regions};
+    }
+    result.status = FrameStatus::ok;
     return result;
   }
 
@@ -288,7 +294,9 @@ class ContactRegion {
     for (std::size_t k = 0; k < 3; ++k) {
       sum_sq -= free_[k] * sums(k, 3);
     }
-    free_sd_per_mm_ = std::sqrt((std::max)(sum_sq, 0.0) / sums(0, 0));
+    // where no free pixel is seen, the edge may lie anywhere within the ring
+    free_sd_per_mm_ = sums(0, 0) > 0 ? std::sqrt((std::max)(sum_sq, 0.0) / sums(0, 0))
+                                     : std::numeric_limits<double>::infinity();
   }
 
   /// The curvature of the free membrane at a pixel of the bordered image, 1/mm.

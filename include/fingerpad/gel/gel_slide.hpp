@@ -75,21 +75,24 @@ constexpr const char* name_of(SlideStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
+/// Result of a frame; one that is refused has no number.
 struct [[nodiscard]] SlideResult {
   SlideStatus status = SlideStatus::refused;
-  Index dots = 0;                      ///< dots in contact from which the slide was computed
-  Point2<double> imprint_px = {0, 0};  ///< displacement of the imprint since the contact began
-  double imprint_sd_px = 0;            ///< its standard deviation along each axis
-  Point2<double> slide_px = {0, 0};    ///< displacement of the imprint relative to the dots in it
-  double slide = 0;                    ///< |slide_px| in pitches
-  double lost = 0;  ///< fraction of the largest area so far that has been lost, in [0, 1]
+  Index dots = 0;  ///< dots in contact from which the slide was computed
+  /// Displacement of the imprint since the contact began, and its standard deviation along an axis.
+  Point2<double> imprint_px = {not_a_number<double>(), not_a_number<double>()};
+  double imprint_sd_px = not_a_number<double>();
+  /// Displacement of the imprint relative to the dots in it.
+  Point2<double> slide_px = {not_a_number<double>(), not_a_number<double>()};
+  double slide = not_a_number<double>();  ///< |slide_px| in pitches
+  double lost = not_a_number<double>();   ///< of the largest area so far, a fraction in [0, 1]
   /// Evidence for slip: the larger of slide / max_slide and lost / max_lost, the latter as far as
   /// min_slide allows.
-  double evidence = 0;
+  double evidence = not_a_number<double>();
   bool alarm = false;  ///< evidence > 1
 
   /// 1 without evidence for slip, falling to 0 at the alarm. FrictionLimit and GripControl take it
-  /// in place of a stick ratio; it is fresh if ok().
+  /// in place of a stick ratio; it is fresh if ok(), and NaN if the frame is refused.
   double held() const { return (std::max)(1 - evidence, 0.0); }
   /// Whether slide and area are those of this frame.
   bool ok() const { return status == SlideStatus::updated || status == SlideStatus::began; }
@@ -148,7 +151,7 @@ class GelSlide {
     } else if (!began_) {
       began_ = true;
       max_area_ = area;
-      result_ = {.status = SlideStatus::began};
+      result_ = at_rest(SlideStatus::began);
       set_key(now, area);
     } else {
       max_area_ = (std::max)(max_area_, area);
@@ -172,6 +175,10 @@ class GelSlide {
   static constexpr double smoothed_cells = 28;  // correlated cells: 4 pi sd^2 of a smoothing with
                                                 // an sd of 1.5 cells
   static constexpr double least_noise = 0.01;   // relative to the spread of the imprint
+
+  static SlideResult at_rest(SlideStatus status) {
+    return {status, 0, {0, 0}, 0, {0, 0}, 0, 0, 0, false};
+  }
 
   struct Cell {  // of the key frame
     Point2<double> at;
@@ -382,7 +389,8 @@ class GelSlide {
   Point2<double> last_shift_ = {0, 0};  // since the key frame, in cells
   Index max_area_ = 0;
   bool began_ = false;
-  SlideResult key_, result_;  // of the key frame, of the last frame
+  // of the key frame, of the last frame
+  SlideResult key_ = at_rest(SlideStatus::no_contact), result_ = key_;
 };
 
 }  // namespace v1

@@ -120,8 +120,8 @@ struct [[nodiscard]] StickResult {
   /// part of a larger one when the steps between frames are large. A kept ratio has 0.05 more with
   /// each frame, up to 0.5.
   S ratio_sd = not_a_number<S>();
-  S furthest = S(0);        ///< d_max, the largest displacement from the reference
-  Index reference_age = 0;  ///< frames from the reference to the answer
+  S furthest = not_a_number<S>();  ///< d_max, the largest displacement from the reference
+  Index reference_age = 0;         ///< frames from the reference to the answer
   /// Of the object since the reference, in the unit of the dots: a sticking dot has moved from p to
   /// scale * rotation(p) + translation. In the image the rotation is about z.
   Pose<S> motion = {};

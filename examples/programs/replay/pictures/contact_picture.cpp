@@ -19,6 +19,9 @@ const Ink held(90, 230, 255);
 const Ink loose(200, 190, 180);
 
 std::string words_of_contact(const ContactResult& contact) {
+  if (!contact.ok()) {
+    return std::string("contact: ") + name_of(contact.status);
+  }
   if (!contact.in_contact()) {
     return "no contact";
   }
