@@ -233,6 +233,17 @@ TEST_CASE("cases: pictures with transparency, of 16 bit, of grey, and a first on
   CHECK_NOTHROW(calibrate::dots(recording.folder(), recording.folder() / "sensor.json"));
 }
 
+TEST_CASE("cases: a free frame that is overexposed or dark is named and left out") {
+  const double exposure = GENERATE(0.25, 2.5);
+  Recording recording;
+  recording.write("free", gel(Kind::free), [&](const cv::Mat& frame, int k) {
+    return k == 1 ? cv::Mat(frame * exposure) : frame;
+  });
+  recording.write("frames", gel(Kind::slip));
+  CHECK(has(recording.checked(), "frames are darker or lighter than the others"));
+  CHECK(is_in_time(recording.slips()));
+}
+
 TEST_CASE("cases: a picture that is cut short is named and left out") {
   const std::string extension = GENERATE(as<std::string>(), ".jpg", ".png");
   Recording recording;

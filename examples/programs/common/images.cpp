@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/failure.hpp"
+#include "common/median.hpp"
 
 namespace replay {
 namespace {
@@ -219,6 +220,23 @@ cv::Mat linear_colours(const cv::Mat& stored, const PictureFormat& format, const
 
 cv::Mat read_colour_image(const fs::path& file, const PictureFormat& format) {
   return linear_colours(read_stored_image(file), format, file);
+}
+
+std::vector<bool> usually_exposed(const std::vector<cv::Mat>& frames) {
+  constexpr double most = 1.25;  // times as light or as dark
+  std::vector<double> levels;    // 0: empty
+  for (const cv::Mat& frame : frames) {
+    const double unit = frame.depth() == CV_16U ? 1.0 / 256 : 1;
+    levels.push_back(frame.empty() ? 0 : 1 + unit * cv::sum(cv::mean(frame))[0]);
+  }
+  std::vector<double> whole = levels;
+  whole.erase(std::remove(whole.begin(), whole.end(), 0.0), whole.end());
+  const double usual = median_of(whole);
+  std::vector<bool> alike;
+  for (const double level : levels) {
+    alike.push_back(level < most * usual && level * most > usual);
+  }
+  return alike;
 }
 
 double saturated_share(const cv::Mat& frame, const cv::Mat_<uchar>& pad) {

@@ -52,6 +52,10 @@ cv::Mat linear_colours(const cv::Mat& stored,
 /// Reads such an image; throws Failure.
 cv::Mat read_colour_image(const std::filesystem::path& file, const PictureFormat& format = {});
 
+/// Whether each frame is as light as most of them, within a quarter: a camera may begin dark or
+/// overexposed. False for one that is empty.
+std::vector<bool> usually_exposed(const std::vector<cv::Mat>& frames);
+
 /// Share of the pixels of `pad` in which red or green is saturated, and what is too much.
 double saturated_share(const cv::Mat& frame, const cv::Mat_<uchar>& pad);
 constexpr double most_saturated = 0.01;

@@ -10,7 +10,6 @@
 
 #include "common/failure.hpp"
 #include "common/images.hpp"
-#include "common/median.hpp"
 #include "fingerpad/core/check.hpp"
 
 namespace replay {
@@ -238,34 +237,24 @@ void read_reference(const fs::path& folder, Recording& recording) {
   }
 }
 
-/// Finds the first frame that is whole and as light as most of the first ones, because a camera may
-/// begin dark or overexposed. Throws Failure.
+/// Finds the first frame that is whole and as light as most of the first ones. Throws Failure.
 void find_first_frame(Recording& recording) {
   constexpr int tried = 10;
-  constexpr double most = 1.25;  // times as light or as dark
-  std::map<int, double> levels;
-  std::vector<double> all;
   std::vector<cv::Mat> pictures;
   DamagedFrames damaged;
   recording.frames.seek(0);
   for (int k = 0; k < (std::min)(tried, recording.frames.size()); ++k) {
     pictures.push_back(next_whole(recording.frames, damaged));
-    if (!pictures.back().empty()) {
-      const double unit = pictures.back().depth() == CV_16U ? 1.0 / 256 : 1;
-      all.push_back(levels[k] = 1 + unit * cv::sum(cv::mean(pictures.back()))[0]);
-    }
   }
-  if (all.empty()) {
-    throw Unreadable(damaged.begin()->second);
-  }
-  const double usual = median_of(all);
-  for (const auto& [k, level] : levels) {
-    if (level < most * usual && level * most > usual) {
-      recording.first_frame = k;
-      recording.reference = pictures[static_cast<std::size_t>(k)];
+  const std::vector<bool> usual = usually_exposed(pictures);
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    if (usual[k]) {
+      recording.first_frame = static_cast<int>(k);
+      recording.reference = pictures[k];
       return;
     }
   }
+  throw Unreadable(damaged.begin()->second);
 }
 
 /// Reads the reference of a dots-only recording, or its first frame.

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "common/failure.hpp"
+#include "common/images.hpp"
 #include "common/median.hpp"
 #include "fingerpad/core/check.hpp"
 #include "fingerpad/gel/gel_contact.hpp"
@@ -119,6 +121,26 @@ cv::Mat in_depth_of(const cv::Mat& like, const cv::Mat& frame) {
   return same;
 }
 
+/// Leaves out the frames of `place` that are lighter or darker than most of them.
+void leave_out_exposed(FreePad& pad, const std::string& place) {
+  const std::vector<bool> usual = usually_exposed(pad.frames);
+  Frames kept;
+  for (std::size_t k = 0; k < usual.size(); ++k) {
+    if (usual[k]) {
+      kept.push_back(pad.frames[k]);
+    }
+  }
+  if (kept.size() < pad.frames.size()) {
+    pad.told.push_back({place,
+                        std::to_string(pad.frames.size() - kept.size()) + " of " +
+                            std::to_string(pad.frames.size()) +
+                            " frames are darker or lighter than the others by a quarter or more, "
+                            "and are left out",
+                        "Fix the exposure, and let the camera run before you record."});
+  }
+  pad.frames = std::move(kept);
+}
+
 /// Leaves out the frames of `place` that show a contact, by comparison with the first frames.
 void leave_out_touched(FreePad& pad,
                        const std::string& place,
@@ -188,6 +210,7 @@ FreePad free_pad_of(Recording& recording, const DotSource& dots) {
   }
   const std::string place =
       recording.free_frames.size() > 0 ? "free" : recording.sensor.reference_frame;
+  leave_out_exposed(pad, place);
   const std::string order = channels_of(first.front(), pad.frames.front());
   if (order == "bgr") {
     leave_out_touched(pad, place, first, options);

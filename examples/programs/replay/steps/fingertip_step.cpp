@@ -43,13 +43,17 @@ cv::Mat_<float> free_depth_of(FingertipOptions options, const cv::Mat& image) {
 
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
   const cv::Size size = recording.reference.size();
-  std::vector<cv::Mat_<float>> depths_mm;
+  std::vector<cv::Mat> frames;
   recording.free_frames.seek(0);
   DamagedFrames damaged;
   for (int k = 0; k < recording.free_frames.size(); ++k) {
-    const cv::Mat frame = next_whole_frame(recording.free_frames, size, damaged);
-    if (!frame.empty()) {
-      depths_mm.push_back(free_depth_of(options, frame));
+    frames.push_back(next_whole_frame(recording.free_frames, size, damaged));
+  }
+  const std::vector<bool> usual = usually_exposed(frames);
+  std::vector<cv::Mat_<float>> depths_mm;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (usual[k]) {
+      depths_mm.push_back(free_depth_of(options, frames[k]));
     }
   }
   return fit_contact_threshold(recording.sensor.camera, depths_mm).threshold_per_mm;
