@@ -16,6 +16,7 @@
 #include "fingerpad/optics/orthographic_camera.hpp"
 #include "fingerpad/published/contact_region.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/refusal.hpp"
 #include "support/soap_film.hpp"
 
@@ -285,4 +286,22 @@ TEST_CASE("calibration: what it refuses", "[contact_region]") {
   bad.pitch_mm = -1;
   CHECK(begins_with(refusal([&] { (void)fit_contact_threshold(bad, Frames{free}); }),
                     "OrthographicCamera: pitch_mm = -1"));
+}
+
+TEST_CASE("unchanged: threshold and smallest dent of noisy free frames", "[unchanged]") {
+  const auto camera = test::pad_camera(70, 80, 0.16);
+  test::Random random(3);
+  std::vector<Image<float>> free(20, test::depths_of<float>(camera, free_pad(0.05), 70, 80));
+  for (Image<float>& frame : free) {
+    add_noise(frame, 0.004, random);
+  }
+  const auto fit = fit_contact_threshold(camera, free, 8);
+  ContactTest test;
+  test.threshold_per_mm = fit.threshold_per_mm;
+  test.ring_px = 8;
+  const auto limit = detection_limit(camera, free, test, fit.median_per_mm, 6.0);
+  test::Digest d;
+  d.all(fit.threshold_per_mm, fit.median_per_mm, fit.median_error_per_mm, fit.region_per_mm,
+        fit.noise_per_mm, limit.free_frames, limit.false_frames, limit.depth_mm, limit.radius_mm);
+  CHECK(d.sum() == Approx(184.478).epsilon(0).margin(1e-3));
 }

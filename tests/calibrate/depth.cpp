@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/refusal.hpp"
@@ -316,4 +317,35 @@ TEST_CASE("calibration of depth: errors of g's coefficients count by the place")
   REQUIRE((x < -0.1 && y < -0.1 && x != y));
   CHECK(sd_from(1) == Approx(-x * sd_from(0)).epsilon(1e-12));
   CHECK(sd_from(4) == Approx(x * y * sd_from(0)).epsilon(1e-12));
+}
+
+TEST_CASE("unchanged: fluid and light of noisy colours", "[unchanged]") {
+  Sensor sensor;
+  sensor.g = {0.0163, 0.002, -0.001, -0.004, 0.001, 0.0005};
+  sensor.ramp = 0.03;
+  Samples samples;
+  for (int k = 0; k < 175; ++k) {
+    samples.push_back(
+        sensor.sample(90 + 12 * (k / 7 % 25), 170 + 50 * (k % 7), 0.5 + 2.3 * (k % 6)));
+    samples.back().green_laplacian = 9 * std::sin(k);
+  }
+  std::mt19937 random(4);
+  add_noise(samples, 0.1, random);
+  samples[20].colour.red += 5;
+  test::Digest d;
+  const auto add = [&](const auto& fit, const Samples& of) {
+    d.all(fit.fluid.c_red_per_mm, fit.fluid.c_green_per_mm, fit.fluid.kappa, fit.red_blur,
+          fit.condition, fit.residual_rms, fit.explained, fit.delta_at_limit);
+    for (std::size_t k = 0; k < fit.covariance.size(); ++k) {
+      d.all(fit.covariance[k][k], fit.covariance[k][0]);
+    }
+    for (const auto& s : of) {
+      d.all(fit.error_mm(s), fit.light.scattering.at(s.plate_mm), fit.light.kappa.at(s.plate_mm));
+    }
+  };
+  add(fit_absorption<2, double>(samples), samples);
+  Samples on_axis = samples_on_axis({}, 15);
+  add_noise(on_axis, 0.1, random);
+  add(fit_absorption<0, double>(on_axis), on_axis);
+  CHECK(d.sum() == Approx(13010.856).epsilon(0).margin(1e-3));
 }

@@ -13,6 +13,7 @@
 
 #include "fingerpad/adapt/dual.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
 
@@ -515,4 +516,19 @@ TEST_CASE("taxel noise: a centroid that cannot move has no deviation, also in de
   CHECK(noise.typical.slopes[0] == Approx(noise.typical.value).epsilon(1e-9));
   CHECK(noise.centroid_deviation_mm.value == 0);
   CHECK(noise.centroid_deviation_mm.slopes[0] == 0);
+}
+
+TEST_CASE("unchanged: noise of an array that is touched for a while", "[unchanged]") {
+  const auto fit = recorded(4, 5, 600, 3, [](Index k, Index i, Index j, double noise) {
+                     const double load =
+                         k > 200 && k < 260 ? 400 + 9 * std::sin(0.7 * double(k)) : 5;
+                     return i == 3 && j == 3 ? 77 : load + (3 + 0.2 * double(i + j)) * noise;
+                   }).fit();
+  test::Digest d;
+  for (const double deviation : fit.deviations) {
+    d.add(deviation);
+  }
+  d.all(fit.typical, fit.typical_error, fit.largest_factor, fit.centroid_deviation_mm, fit.shared,
+        fit.windows, fit.ok());
+  CHECK(d.sum() == Approx(1095.968).epsilon(0).margin(1e-3));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/generators.hpp"
 #include "support/pad.hpp"
 #include "support/refusal.hpp"
@@ -150,4 +151,21 @@ TEST_CASE("intensity calibration: what tells nothing is refused", "[intensity_de
   };
   CHECK(begins_with(refused_ball(0, 0.1), "fit_intensity: ball_mm = 0"));
   CHECK(begins_with(refused_ball(4, -1), "fit_intensity: mm_per_px = -1"));
+}
+
+TEST_CASE("unchanged: the law of noisy presses", "[unchanged]") {
+  Gel gel{.law = {4, 0.5, -0.2}, .noise = 1};
+  Random random(6);
+  std::vector<Image<double>> pressed;
+  for (const double depth : {0.5, 1.1, 1.7}) {
+    gel.depth_mm = depth;
+    gel.axis_mm.x += 0.4;
+    pressed.push_back(gel.pressed(random));
+  }
+  test::Digest d;
+  for (const IntensityFit<>& found : {fit(gel, pressed), fit(gel, pressed, as_it_is)}) {
+    d.all(found.law.linear_mm, found.variance_mm2, found.mean_error_mm, found.max_depth_mm,
+          found.ok());
+  }
+  CHECK(d.sum() == Approx(276.052).epsilon(0).margin(1e-3));
 }

@@ -11,6 +11,7 @@
 
 #include "fingerpad/adapt/eigen.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/generators.hpp"
 
 using namespace fingerpad;
@@ -131,4 +132,23 @@ TEST_CASE("calibration of neighbour light: degenerate frames are refused") {
   CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {0, 5}), parameter_error);
   CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {5, 4}), parameter_error);
   CHECK_THROWS_AS(fit_of(reference, pressed, pressed, {1, 5}, 20), parameter_error);
+}
+
+TEST_CASE("unchanged: neighbouring light of noisy depths", "[unchanged]") {
+  const Map reference = membrane(0, 0);
+  const Frames measured = {membrane(1, 1), membrane(2.5, -2)};
+  Frames truth = truths({6, 0.001, 0.2}, reference, measured);
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0, 0.02);
+  for (Map& l : truth) {
+    l = l.unaryExpr([&](double v) { return v + noise(random); });
+  }
+  const auto fit = fit_of(reference, measured, truth, {3, 9});
+  test::Digest d;
+  d.all(fit.light.radius_px, fit.light.m0_mm_per_rad, fit.light.n_per_mm, fit.rms_before_mm,
+        fit.rms_after_mm, fit.m0_sd, fit.n_sd, fit.ok());
+  for (const double rms : fit.rms_of_radius_mm) {
+    d.add(rms);
+  }
+  CHECK(d.sum() == Approx(387.837).epsilon(0).margin(1e-3));
 }

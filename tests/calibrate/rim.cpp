@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/generators.hpp"
 #include "support/inflated_rubber.hpp"
 #include "support/numbers.hpp"
@@ -113,4 +114,19 @@ TEST_CASE("rim calibration: what cannot be is refused or doubted", "[wrench]") {
   auto apexes = apexes_of({}, four_pressures);
   apexes[2].apex_mm += 0.2;
   CHECK(fit_rim(cap_of({}), apexes).cause == cause::no_such_cap);
+}
+
+TEST_CASE("unchanged: the membrane of noisy apexes", "[unchanged]") {
+  test::Digest d;
+  test::Random random(8);
+  for (const double mooney_sd : {0.0, 0.3}) {
+    auto apexes = apexes_of({}, four_pressures, 0.005);
+    for (FreeApex& a : apexes) {
+      a.apex_mm += a.sd_mm * random.normal();
+    }
+    const auto fit = fit_rim(cap_of({}), apexes, {.height_sd_mm = 0.05, .mooney_sd = mooney_sd});
+    d.all(fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm, fit.height_mm, fit.height_sd_mm,
+          fit.mooney_share, fit.mooney_sd, fit.residual_mm);
+  }
+  CHECK(d.sum() == Approx(313.230).epsilon(0).margin(1e-3));
 }

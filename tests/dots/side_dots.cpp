@@ -15,6 +15,7 @@
 
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/image.hpp"
 #include "support/refusal.hpp"
 
@@ -363,4 +364,23 @@ TEST_CASE("side dots: mistakes are refused, and a frame allocates nothing") {
   CHECK((copy(frame).found == 3 * count && dots(frame).found == 3 * count));
   CHECK(std::equal(copy.px().begin(), copy.px().end(), dots.px().begin(),
                    [](const Point& a, const Point& b) { return a.x == b.x && a.y == b.y; }));
+}
+
+TEST_CASE("unchanged: side dots of a noisy picture", "[unchanged]") {
+  SideDots dots = dots_of({});
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 1.5);
+  test::Digest d;
+  for (const double load : {0.1, 0.3, 0.5}) {
+    auto picture = Print{.load = load}.picture();
+    for (double& light : picture.cells) {
+      light += noise(random);
+    }
+    const auto r = dots(bytes_of(picture));
+    d.all(r.status, r.found, r.expected);
+    for (std::size_t k = 0; k < dots.px().size(); ++k) {
+      d.all(dots.px()[k], dots.sd_px()[k]);
+    }
+  }
+  CHECK(d.sum() == Approx(50428.229).epsilon(0).margin(1e-3));
 }
