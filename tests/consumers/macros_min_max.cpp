@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The fingerpad authors
 // SPDX-License-Identifier: MIT
-// A user whose own headers define min and max as macros, as <windows.h> does. The standard library
-// and the foreign libraries come first, because some of them do not compile with such macros.
+// A user whose own headers define min and max as macros, as <windows.h> does, and variables with
+// names of the library. The standard library and the foreign libraries come first, because some of
+// them do not compile with such macros.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -28,6 +29,8 @@
 
 #define min(a, b) this does not compile
 #define max(a, b) this does not compile
+int dot, cross, norm, square, value, chain, grid, scalar, rows, cols, cast, check, require;
+int is_finite, is_plausible, pixel_of, point_at, as_view, inverse, normalized, name_of;
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/mdspan.hpp"

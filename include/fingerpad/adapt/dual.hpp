@@ -33,7 +33,7 @@ struct Dual {
   }
 
   /// f(x, y) of value `at`, where df/dx is `by_x` and df/dy is `by_y`.
-  friend constexpr Dual chain(
+  static constexpr Dual chain(
       const Real& at, const Real& by_x, const Dual& x, const Real& by_y, const Dual& y) {
     Dual f(at);
     for (std::size_t k = 0; k < N; ++k) {
@@ -42,7 +42,7 @@ struct Dual {
     return f;
   }
   /// f(x) of value `at`, where df/dx is `slope`.
-  friend constexpr Dual chain(const Real& at, const Real& slope, const Dual& x) {
+  static constexpr Dual chain(const Real& at, const Real& slope, const Dual& x) {
     return chain(at, slope, x, Real(0), Dual());
   }
 

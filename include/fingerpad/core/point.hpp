@@ -28,7 +28,6 @@ struct Point2 {
     return {a.x / divisor, a.y / divisor};
   }
   friend constexpr Point2& operator+=(Point2& a, const Point2& b) { return a = a + b; }
-  friend constexpr S dot(const Point2& a, const Point2& b) { return a.x * b.x + a.y * b.y; }
   /// Whether both coordinates are finite.
   friend constexpr bool is_finite(const Point2& p) { return is_finite(p.x) && is_finite(p.y); }
   /// Whether both can be measurements: below a million in magnitude.
@@ -59,12 +58,6 @@ struct Point3 {
     return {a.x / divisor, a.y / divisor, a.z / divisor};
   }
   friend constexpr Point3& operator+=(Point3& a, const Point3& b) { return a = a + b; }
-  friend constexpr S dot(const Point3& a, const Point3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-  }
-  friend constexpr Point3 cross(const Point3& a, const Point3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
   friend constexpr bool is_finite(const Point3& p) {
     return is_finite(p.x) && is_finite(p.y) && is_finite(p.z);
   }
@@ -72,6 +65,19 @@ struct Point3 {
     return is_plausible(p.x) && is_plausible(p.y) && is_plausible(p.z);
   }
 };
+
+template <scalar S>
+constexpr S dot(const Point2<S>& a, const Point2<S>& b) {
+  return a.x * b.x + a.y * b.y;
+}
+template <scalar S>
+constexpr S dot(const Point3<S>& a, const Point3<S>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <scalar S>
+constexpr Point3<S> cross(const Point3<S>& a, const Point3<S>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 /// |a|^2.
 template <class Point>
