@@ -155,6 +155,7 @@ struct Bench {
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   const auto camera = test::pad_camera(480, 640, 0.0768);
-  Bench{"350 mm^2", 350, camera}.add_all();
+  const Bench contact{"350 mm^2", 350, camera};  // outlives the rows
+  contact.add_all();
   return bench::run(argc, argv);
 }

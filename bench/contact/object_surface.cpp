@@ -176,6 +176,7 @@ struct Bench {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  Bench{}.add_all();
+  const Bench surface{};  // outlives the rows
+  surface.add_all();
   return bench::run(argc, argv);
 }

@@ -172,6 +172,7 @@ struct Bench {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  Bench{bench::round_pad(), 10}.add_all();
+  const Bench pad{bench::round_pad(), 10};  // outlives the rows
+  pad.add_all();
   return bench::run(argc, argv);
 }
