@@ -46,15 +46,14 @@ struct Camera {
 /// Says which value is out of range; "" if none is.
 template <scalar S>
 std::string check(const Camera<S>& c) {
-  const double distance_mm = static_cast<double>(value(c.plate_distance_mm));
+  const auto distance_mm = static_cast<double>(value(c.plate_distance_mm));
+  const Range thickness = {.min = 0, .max = distance_mm, .below_max = true};
   return check("Camera", {{"plate_distance_mm", c.plate_distance_mm, positive},
                           {"refractive_index", c.refractive_index, at_least(1)},
                           {"center_x_px", c.center_x_px, finite_number},
                           {"center_y_px", c.center_y_px, finite_number},
                           {"pitch_mm", c.pitch_mm, positive},
-                          {"plate_thickness_mm",
-                           c.plate_thickness_mm,
-                           {.min = 0, .max = distance_mm, .below_max = true}},
+                          {"plate_thickness_mm", c.plate_thickness_mm, thickness},
                           {"plate_index", c.plate_index, at_least(1)},
                           {"pixel_aspect", c.pixel_aspect, positive},
                           {"distortion_k1", c.distortion_k1, finite_number},
@@ -222,10 +221,9 @@ Point3<S> point_at(const Camera<S>& camera, const S& row, const S& col, const S&
   return {tangents.x * reach_mm, tangents.y * reach_mm, depth_mm};
 }
 
-/// The pixel that sees `point` (x along columns, y along rows); inverse of point_at. Requires
-/// point.z >= 0. The distance from the axis is concave in t, so Newton's method from the paraxial
-/// ray rises to the root and needs no safeguard: three to five steps in double, at most eight for
-/// up to 50 digits.
+/// The pixel that sees `point`; inverse of point_at. Requires point.z >= 0. The distance from the
+/// axis is concave in t, so Newton's method from the paraxial ray rises to the root and needs no
+/// safeguard: three to five steps in double, at most eight for up to 50 digits.
 template <scalar S>
 Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   using std::sqrt;
