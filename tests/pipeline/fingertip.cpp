@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -979,6 +980,55 @@ TEST_CASE("mistakes with a fingertip's frames: neither an answer nor that nothin
     CHECK(said(every_pixel, seen) == mistake.said);
     if (mistake.said == std::string("partial")) {
       CHECK(said(tip, mistake.make(free)) == "partial");
+    }
+  }
+}
+
+namespace {
+
+/// What has a number has its standard deviation, and what is refused has neither.
+void check_numbers(const FingertipResult& r) {
+  const auto known = [](auto... numbers) { return (std::isfinite(numbers) && ...); };
+  const auto none = [](auto... numbers) { return (std::isnan(numbers) && ...); };
+  const auto& [c, m, w] = std::tie(r.contact, r.motion, r.wrench);
+  CHECK((c.ok() ? known(c.area_mm2, c.area_sd_mm2, c.pressed_mm2)
+                : none(c.area_mm2, c.area_sd_mm2, c.pressed_mm2, c.center_mm.x, c.depth_mm)));
+  CHECK((m.has_pose()
+             ? known(m.position_mm.x, m.position_sd_mm, m.angles.z_rad, m.rotation_sd_rad)
+             : none(m.position_mm.x, m.position_sd_mm, m.angles.z_rad, m.rotation_sd_rad)));
+  CHECK((!r.stick.updated() || known(r.stick.stick_ratio, r.stick.ratio_sd)));
+  CHECK((!r.slip.ok() || known(r.slip.ratio_sd)));
+  CHECK((!r.normal.has_force() || known(r.normal.variance_n2)));
+  CHECK((w.has_force() ? known(w.force_n.x, w.covariance(0, 0), w.pressure_mpa)
+                       : none(w.force_n.x, w.covariance(0, 0), w.pressure_mpa)));
+}
+
+}  // namespace
+
+TEST_CASE("a number has its standard deviation, and what is refused has none",
+          "[chain][mistakes]") {
+  auto options = frames().options();
+  options.wrench.emplace();
+  options.wrench->cap = {18.735, 11};
+  const double light = GENERATE(1.0, 0.0, 0.9, 9.0);
+  const auto spoil = GENERATE(
+      as<void (*)(Point2<double>&)>(), [](Point2<double>&) {},
+      [](Point2<double>& p) { p.x = test::nan; },
+      [](Point2<double>& p) {
+        p = {0, 0};
+      },
+      [](Point2<double>& p) {
+        p = {p.y * 0.08, p.x * 0.08};
+      });
+  for (const double mpa : {pressure_mpa, test::nan, -0.01}) {
+    Fingertip tip(options);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Levels seen = times(copy_of(frames()[k].view()), k == 2 ? light : 1);
+      auto dots = frames()[k].dots_px;
+      for (auto& dot : dots.cells) {
+        k == 0 ? void() : spoil(dot);
+      }
+      check_numbers(tip(seen.red, seen.green, dots, mpa, 0.1 * static_cast<double>(k)));
     }
   }
 }
