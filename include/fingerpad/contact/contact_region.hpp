@@ -147,6 +147,8 @@ class ContactRegion {
   /// nothing.
   template <grid Depth, class Mask>
   ContactResult operator()(const Depth& depth_mm, Mask&& mask) {
+    static_assert(!std::is_integral_v<cell_t<Depth>>,
+                  "depths are no whole numbers: give the depth map first, then the mask");
     detail::writes_to<Mask>();
     ContactResult result;
     const auto depth = as_view(depth_mm);
