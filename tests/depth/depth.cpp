@@ -23,6 +23,7 @@
 #include "fingerpad/published/depth.hpp"
 #include "support/allocations.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
 #include "support/pad.hpp"
@@ -1416,4 +1417,33 @@ TEST_CASE("depth by polynomials, for ranges of 14.5 and 18 mm", "[depth]") {
   CAPTURE(max_depth_mm, single, twice);
   CHECK(single <= bound_mm::polynomial_float);
   CHECK(twice <= bound_mm::polynomial_double);
+}
+
+TEST_CASE("unchanged: reference and depth of noisy frames", "[unchanged]") {
+  const test::Pad pad = test::pad_of(120, 140, 0.32);
+  auto free = pad.frame<std::uint8_t>(pad.free_depths(), 1, 3);
+  for (Index j = 50; j < 60; ++j) {
+    free.red(40, j) = 255;  // glare
+  }
+  const auto reference =
+      fit_reference(pad.camera, pad.fluid, free.red, free.green, pad.free_depths());
+  auto depths = pad.free_depths();
+  for (double& l : depths.cells) {
+    l = std::fmin(l, 9.0);
+  }
+  auto frame = pad.frame<std::uint8_t>(depths, 1, 4);
+  frame.green(60, 70) = 0;
+  frame.red(61, 20) = 255;
+  test::Digest d;
+  for (const int window_px : {1, 9, 21}) {
+    DepthEstimator<float> estimate(pad.camera, pad.fluid, reference, {.window_px = window_px});
+    Image<float> depth_mm(120, 140);
+    Image<PixelStatus> status(120, 140);
+    d.add(estimate(frame.red, frame.green, depth_mm, status).status);
+    d.all(depth_mm, status);
+  }
+  for (std::size_t k = 0; k < reference.scattering.size(); k += 7) {
+    d.all(reference.scattering[k], reference.green[k]);
+  }
+  CHECK(d.sum() == Approx(2284424.805).epsilon(0).margin(1e-3));
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/pad.hpp"
 
 using namespace fingerpad;
@@ -142,4 +143,22 @@ TEST_CASE("frames that tell no light", "[free light]") {
   auto unknown = reference;
   unknown.green.clear();
   CHECK_FALSE(FreeLight<float>(pad.camera, pad.fluid, unknown)(frame.red, frame.green).has_value());
+}
+
+TEST_CASE("unchanged: light of a noisy free frame with dirt", "[unchanged]") {
+  test::Pad pad = test::pad_of(240, 280, 0.16);
+  const FreeLight<float> light(pad.camera, pad.fluid, pad.reference<float>());
+  test::Digest d;
+  for (const LightGains& gains : changes) {
+    auto frame = frame_of(pad, pad.free_depths(), gains, 5);
+    for (Index i = 60; i < 90; ++i) {
+      for (Index j = 100; j < 140; ++j) {
+        frame.red(i, j) *= 0.8;
+      }
+    }
+    const auto found = light(frame.red, frame.green);
+    REQUIRE(found.has_value());
+    d.all(found->gains.green, found->gains.red, found->height, found->green_sd, found->balance_sd);
+  }
+  CHECK(d.sum() == Approx(885.350).epsilon(0).margin(1e-3));
 }
