@@ -115,7 +115,9 @@ def pad(table, truth, pictures):
 
 def gel(table, pictures):
     slips = [f for f, s in zip(table["frame"], table["slip"]) if s == 1]
-    chart("Slide of the contact past the dots: " + (f"it slips from frame {slips[0]:.0f} on" if slips else "no slip"),
+    touches = any(area > 0 for area in table["contact_area_px"])
+    chart("Slide of the contact past the dots: " + (f"it slips from frame {slips[0]:.0f} on" if slips else
+                                                    "no slip" if touches else "no contact was seen"),
           [("evidence; above 1: slip", [("", table["slide_evidence"], None, None)]),
            ("slid, pitches", [("", table["slide_pitches"], None, None)]),
            ("contact, px", [("", table["contact_area_px"], None, None)])],
