@@ -13,6 +13,7 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/optics/orthographic_camera.hpp"
 #include "support/catch.hpp"
+#include "support/digest.hpp"
 #include "support/foreign_image.hpp"
 #include "support/generators.hpp"
 #include "support/numbers.hpp"
@@ -549,4 +550,26 @@ TEST_CASE("surface: whatever comes in, an ok result holds finite numbers", "[sur
       RC_ASSERT((!r.ok() || r.normal.z > 0));
     });
   });
+}
+
+TEST_CASE("unchanged: a ball seen with noise", "[unchanged]") {
+  const OrthographicCamera<double> camera{39.5, 29.5, 0.1};
+  test::Random random(4);
+  test::Digest d;
+  for (const double radius_mm : {3.0, 6.0, 40.0}) {
+    Image<double> depth(height, width);
+    Mask mask(height, width);
+    for (Index i = 0; i < height; ++i) {
+      for (Index j = 0; j < width; ++j) {
+        const double x = 0.1 * (double(j) - 43), y = 0.1 * (double(i) - 27), sq = x * x + y * y;
+        mask(i, j) = sq < 5 ? 1 : 0;
+        depth(i, j) = 9 - radius_mm + std::sqrt(radius_mm * radius_mm - std::fmin(sq, 5.0)) +
+                      0.02 * random.normal();
+      }
+    }
+    const auto r = fit_surface(camera, depth, mask);
+    d.all(r.pixels, r.curvature_1_per_mm, r.curvature_2_per_mm, r.curvature_1_sd_per_mm,
+          r.curvature_2_sd_per_mm, r.point_mm, r.normal, r.rms_mm);
+  }
+  CHECK(d.sum() == Approx(323.681).epsilon(0).margin(1e-3));
 }
