@@ -41,8 +41,7 @@ using Index = std::ptrdiff_t;
 ///   epsilon()  relative spacing of `real`
 ///   value(x)   x as a `real`, without derivatives, for branches
 /// The primary template serves every type with its own std::numeric_limits. A dual number has none
-/// (the unspecialised std::numeric_limits silently returns 0), so it needs its own traits: see
-/// adapt/dual.hpp.
+/// (the unspecialised one silently returns 0), so it needs its own traits: see adapt/dual.hpp.
 template <class S>
 struct scalar_traits {
   static_assert(std::numeric_limits<S>::is_specialized,
@@ -69,9 +68,10 @@ concept scalar = std::copyable<S> && !std::integral<S> && std::constructible_fro
 template <class S>
 using scalar_real_t = typename scalar_traits<S>::real;
 
-/// x without its derivatives, as the plain number on which branches are taken.
+/// x without its derivatives, as the plain number on which branches are taken. Its type is `auto`,
+/// because a compiler may look at it before it asks whether S is a scalar.
 template <scalar S>
-constexpr scalar_real_t<S> value(const S& x) {
+constexpr auto value(const S& x) {
   return scalar_traits<S>::value(x);
 }
 
