@@ -29,8 +29,8 @@
 
 #define min(a, b) this does not compile
 #define max(a, b) this does not compile
-int dot, cross, norm, square, value, chain, grid, scalar, rows, cols, cast, check, require;
-int is_finite, is_plausible, pixel_of, point_at, as_view, inverse, normalized, name_of;
+int dot, cross, chain, is_finite, is_plausible, pixel_of, point_at, as_view, normalized, name_of,
+    squared_norm, same_size, fit_rigid, contact_load;
 #include "fingerpad/adapt/dual.hpp"
 #include "fingerpad/adapt/eigen.hpp"
 #include "fingerpad/adapt/mdspan.hpp"
