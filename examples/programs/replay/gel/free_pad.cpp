@@ -121,8 +121,8 @@ cv::Mat in_depth_of(const cv::Mat& like, const cv::Mat& frame) {
   return same;
 }
 
-/// Leaves out the frames of `place` that are lighter or darker than most of them.
-void leave_out_exposed(FreePad& pad, const std::string& place) {
+/// Leaves out the frames of `place` that are much lighter or darker than most of them.
+void leave_out_unlike(FreePad& pad, const std::string& place) {
   const std::vector<bool> usual = usually_exposed(pad.frames);
   Frames kept;
   for (std::size_t k = 0; k < usual.size(); ++k) {
@@ -210,7 +210,7 @@ FreePad free_pad_of(Recording& recording, const DotSource& dots) {
   }
   const std::string place =
       recording.free_frames.size() > 0 ? "free" : recording.sensor.reference_frame;
-  leave_out_exposed(pad, place);
+  leave_out_unlike(pad, place);
   const std::string order = channels_of(first.front(), pad.frames.front());
   if (order == "bgr") {
     leave_out_touched(pad, place, first, options);
