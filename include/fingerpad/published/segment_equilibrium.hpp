@@ -326,10 +326,7 @@ class SegmentEquilibrium {
     S load = f_v_[at(i, 0)] * around_[at(i, 0)].normal.z;
     for (Index j = 0; j < m_; ++j) {
       load = load - known(i, j, p).z;
-      const Point3<S>& up = around_[at(i, j + 1)].normal;
-      // a level membrane gives 0 / 0: take the value below
-      const bool steep = S(400) * up.z * up.z > squared_norm(up);
-      f_v_[at(i, j + 1)] = steep ? load / up.z : f_v_[at(i, j)];
+      f_v_[at(i, j + 1)] = load / around_[at(i, j + 1)].normal.z;
     }
   }
 
