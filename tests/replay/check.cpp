@@ -227,6 +227,14 @@ const std::vector<Mistake> mistakes = {
        });
      },
      "If the unit is ms, divide by 1000"},
+    {"time in min",
+     [](const Copy& c) {
+       c.edit_table("signals.csv", [](Row& r) {
+         r[1] = std::to_string(std::stoi(r[0]) / (60 * 30.0));
+         return true;
+       });
+     },
+     "if it is min, multiply by 60"},
     {"time that goes back",
      [](const Copy& c) {
        c.edit_table("signals.csv", [](Row& r) {
@@ -471,6 +479,8 @@ void make_all(const Copy& copy, double reading) {
 const std::vector<Mistake> foam_mistakes = {
     {"time in ms", [](const Copy& c) { c.scale("taxels.csv", 1, 1000); },
      "If the unit is ms, divide by 1000"},
+    {"time in min", [](const Copy& c) { c.scale("taxels.csv", 1, 1.0 / 60); },
+     "if it is min, multiply by 60"},
     {"a gap",
      [](const Copy& c) {
        c.edit_table("taxels.csv", [](Row& r) {

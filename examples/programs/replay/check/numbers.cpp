@@ -155,9 +155,9 @@ void check_clock(const std::string& place,
   if (usual > 5) {
     findings.push_back({place, "the median interval is " + short_number(usual) + " s",
                         "If the unit is ms, divide by 1000."});
-  } else if (usual > 0 && usual < 1e-4) {
+  } else if (usual > 0 && usual < 1e-3) {
     findings.push_back({place, "the median interval is " + short_number(usual) + " s",
-                        "Check that the unit is s."});
+                        "Check that the unit is s: if it is min, multiply by 60."});
   }
   if (longest_s > 5 * usual && steps.size() > 5) {
     findings.push_back({place,
