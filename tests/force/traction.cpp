@@ -259,6 +259,55 @@ TEST_CASE("traction: the ring and what fades out", "[traction]") {
   CHECK(r.modulus_differs);
 }
 
+TEST_CASE("traction: each of several contacts", "[traction]") {
+  // on a plate every dot bears p times its area: a contact those of its dots and its ring, and
+  // where rings meet each those that are nearer; two corners on each side are as near to both
+  const Index n = 15;
+  const double p = 0.01;
+  TractionField field(flat(n, 1), {.mu_t_n_per_mm = 0.4, .ring_dots = 3, .fade_dots = 0});
+  auto dots = flat(n, 1);
+  for (auto& x : dots.cells) {
+    x.z = 9;
+  }
+  Flags left(n, n, 0), right(n, n, 0), both(n, n, 0);
+  left(7, 4) = right(7, 9) = both(7, 4) = both(7, 9) = 1;
+  CHECK(!field.part(left).has_force());  // no frame yet
+  const auto all = field(dots, both, p);
+  REQUIRE(all.has_force());
+  const auto a = field.part(left), b = field.part(right), none = field.part(Flags(n, n, 0));
+  CHECK(-a.force_n.z / p == Approx(7 * 6 + 2));
+  CHECK(-b.force_n.z / p == Approx(7 * 6 + 2));
+  CHECK(-all.force_n.z / p == Approx(7 * 12));
+  CHECK(a.moment_n_mm.y + b.moment_n_mm.y == Approx(0.5 * (a.force_n.z + b.force_n.z)));
+  CHECK(none.status == TractionStatus::no_contact);
+  CHECK(size(none.force_n) == 0);
+  CHECK(distance(field.part(both).force_n, all.force_n) == 0);
+  CHECK(!field.part(Flags(n, n - 1, 0)).has_force());
+}
+
+TEST_CASE("traction: two balls on a finite-element membrane, each with its force", "[traction]") {
+  // forces of the nodes of each ball, N, and their moments about the middle of the base, N mm
+  const Vector forces[2] = {{0.0801, 0.2195, -1.1859}, {-0.2105, 0.8343, -1.1298}};
+  const Vector moments[2] = {{-3.344, -5.557, 0.050}, {-11.021, 3.894, 5.110}};
+  const auto scene = test::traction_scene("two_balls");
+  TractionField field(test::stress_free_dots("two_balls_stress_free"), {.mu_t_n_per_mm = 0.3});
+  test::Gauss gauss(5);
+  for (const double noise_mm : {0.0, 0.005}) {
+    CAPTURE(noise_mm);
+    REQUIRE(
+        field(test::noisy(scene.dots, noise_mm, gauss), scene.contact, scene.pressure_mpa).ok());
+    for (unsigned char ball = 1; ball <= 2; ++ball) {
+      Flags dots(21, 21, 0);
+      for (std::size_t k = 0; k < dots.cells.size(); ++k) {
+        dots.cells[k] = scene.contact.cells[k] == ball;
+      }
+      const auto r = field.part(dots);
+      CHECK(distance(r.force_n, forces[ball - 1]) < 0.02 * 1.2 + 3 * noise_mm);
+      CHECK(distance(r.moment_n_mm, moments[ball - 1]) < 0.02 * 12 + 30 * noise_mm);
+    }
+  }
+}
+
 TEST_CASE("traction: a dot that is not found", "[traction]") {
   const auto s = test::traction_scene("drag");
   const auto free = test::stress_free_dots();

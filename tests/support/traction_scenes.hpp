@@ -61,8 +61,8 @@ inline std::ifstream traction_data(const std::string& name) {
   return file;
 }
 
-inline Dots stress_free_dots() {
-  auto file = traction_data("stress_free");
+inline Dots stress_free_dots(const std::string& name = "stress_free") {
+  auto file = traction_data(name);
   Dots dots = no_dots();
   std::string line;
   std::getline(file, line);
@@ -92,7 +92,7 @@ inline TractionScene traction_scene(const std::string& name) {
     if (std::sscanf(line.c_str(), "%d,%d,%lf,%lf,%lf,%d,%lf", &col, &row, &p.x, &p.y, &p.z,
                     &touches, &pressure) == 7) {
       s.dots(row, col) = p;
-      s.contact(row, col) = touches != 0;
+      s.contact(row, col) = static_cast<unsigned char>(touches);  // number of the object, from 1
       s.contact_pressure_mpa(row, col) = pressure;
     }
   }

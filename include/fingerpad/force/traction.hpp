@@ -206,6 +206,7 @@ class TractionField {
     use_.assign(dots, Use::none);
     found_.assign(dots, 0);
     steps_.assign(dots, 0);
+    part_steps_ = steps_;
     ears_.resize(dots);
     read_dots(from);
     S upward = S(0);
@@ -251,19 +252,22 @@ class TractionField {
     }
     read_dots(dots);
     place_missing_dots();
-    const bool touches = count_steps(touch);
+    const bool touches = count_steps(touch, steps_);
     const bool is_membrane = pull_cells() && settle_dots();
     result.status = find_modulus(pressure_mpa, is_membrane, result);
     write_loads(pressure_mpa, result);
-    if (result.ok()) {
-      sum_loads(pressure_mpa, result);
-      result.status = !touches                   ? TractionStatus::no_contact
-                      : result.dots_left_out > 0 ? TractionStatus::incomplete
-                      : result.modulus_differs || result.is_pulled
-                          ? TractionStatus::free_part_loaded
-                          : TractionStatus::ok;
-    }
-    return result;
+    frame_ = result;
+    frame_pressure_mpa_ = pressure_mpa;
+    return sum_loads(touches, steps_, result);
+  }
+
+  /// Force and moment of one of several contacts of the last frame, whose dots `contact` marks. Of
+  /// the rings, a dot counts for the nearest contact, or for all that are as near.
+  template <contact_mask Contact>
+  TractionResult<S> part(const Contact& contact) {
+    const auto touch = as_view(contact);
+    return has_size(touch) ? sum_loads(count_steps(touch, part_steps_), part_steps_, frame_)
+                           : TractionResult<S>();
   }
 
  private:
@@ -331,27 +335,27 @@ class TractionField {
   /// Counts the steps from each dot to the nearest one in contact, to any of the eight neighbours,
   /// in a pass forward and one backward. Whether any is in contact.
   template <class Touch>
-  bool count_steps(const Touch& touch) {
+  bool count_steps(const Touch& touch, std::vector<Index>& steps) const {
     bool touches = false;
     for (Index i = 0; i < rows_; ++i) {
       for (Index j = 0; j < cols_; ++j) {
         const bool here = is_contact(std::remove_cvref_t<decltype(touch(i, j))>(touch(i, j)));
-        steps_[at(i, j)] = here ? 0 : rows_ + cols_;
+        steps[at(i, j)] = here ? 0 : rows_ + cols_;
         touches = touches || here;
-        pass_on_steps(i, j, 1);
+        pass_on_steps(i, j, 1, steps);
       }
     }
     for (Index i = rows_ - 1; i >= 0; --i) {
       for (Index j = cols_ - 1; j >= 0; --j) {
-        pass_on_steps(i, j, -1);
+        pass_on_steps(i, j, -1, steps);
       }
     }
     return touches;
   }
-  void pass_on_steps(Index i, Index j, Index way) {
+  void pass_on_steps(Index i, Index j, Index way, std::vector<Index>& steps) const {
     for (const auto& [r, c] : {DotIndex{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}}) {
       if (is_inside(i + way * r, j + way * c)) {
-        steps_[at(i, j)] = (std::min)(steps_[at(i, j)], steps_[at(i + way * r, j + way * c)] + 1);
+        steps[at(i, j)] = (std::min)(steps[at(i, j)], steps[at(i + way * r, j + way * c)] + 1);
       }
     }
   }
@@ -487,21 +491,34 @@ class TractionField {
   }
 
   /// Sums force and moment over the dots in contact and in the ring around it, and with decreasing
-  /// weight over those of the fade.
-  void sum_loads(const S& pressure_mpa, TractionResult<S>& result) const {
+  /// weight over those of the fade, except those that are nearer to another contact.
+  TractionResult<S> sum_loads(bool touches,
+                              const std::vector<Index>& steps,
+                              TractionResult<S> result) const {
+    if (!result.ok()) {
+      return result;
+    }
     const Index fade = options_.fade_dots + 1;
     result.force_n = result.moment_n_mm = {S(0), S(0), S(0)};
     for (std::size_t k = 0; k < use_.size(); ++k) {
-      const Index beyond = (std::max)(steps_[k] - options_.ring_dots, Index(0));
-      if (beyond < fade && use_[k] == Use::none) {
-        result.dots_left_out += beyond == 0 ? 1 : 0;
-      } else if (beyond < fade) {
-        const S weight = S(static_cast<double>(fade - beyond)) / S(static_cast<double>(fade));
-        const Point3<S> force = weight * force_on(k, pressure_mpa, result.mu_t_n_per_mm);
-        result.force_n += force;
-        result.moment_n_mm += cross(place_[k], force);
+      const Index beyond = (std::max)(steps[k] - options_.ring_dots, Index(0));
+      if (beyond >= fade || steps[k] > steps_[k]) {
+        continue;
       }
+      if (use_[k] == Use::none) {
+        result.dots_left_out += beyond == 0 ? 1 : 0;
+        continue;
+      }
+      const S weight = S(static_cast<double>(fade - beyond)) / S(static_cast<double>(fade));
+      const Point3<S> force = weight * force_on(k, frame_pressure_mpa_, result.mu_t_n_per_mm);
+      result.force_n += force;
+      result.moment_n_mm += cross(place_[k], force);
     }
+    result.status = !touches                                     ? TractionStatus::no_contact
+                    : result.dots_left_out > 0                   ? TractionStatus::incomplete
+                    : result.modulus_differs || result.is_pulled ? TractionStatus::free_part_loaded
+                                                                 : TractionStatus::ok;
+    return result;
   }
 
   TractionOptions<S> options_;
@@ -513,7 +530,9 @@ class TractionField {
   std::vector<S> pressure_;
   std::vector<Use> use_;
   std::vector<std::uint8_t> found_;
-  std::vector<Index> steps_;
+  std::vector<Index> steps_, part_steps_;  ///< from the nearest dot in contact
+  TractionResult<S> frame_ = {};           ///< the last one, without the sums
+  S frame_pressure_mpa_ = S(0);
 };
 
 template <spatial_dot_grid Dots>
