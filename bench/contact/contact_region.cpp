@@ -139,11 +139,9 @@ struct Bench {
 
   void add_all() const {
     const auto scenes = bench::kept([this] { return varied(); });
-    const ContactTest no_gap{.touching_gap_mm = 0};
     add_published();
-    add_region("default, with its gap", scenes);
-    add_region("default, no gap", scenes, no_gap);
-    add_region<double>("default, no gap, double", scenes, no_gap);
+    add_region("default", scenes);
+    add_region<double>("default, double", scenes);
     add_region("no placed edge", scenes, {.places_edge = false});
     bench::add_streaming(group, pixels);
     add_opencv();

@@ -51,7 +51,7 @@ COMPARED = [
      "BiasFreeMean + ExponentialFree<>"),
     ("curvature of caps", "curvature", "round pad, radius 10 px", "published circle, double",
      "clamped mean, float, through a camera, the default"),
-    ("contact's area", "contact_region", "350 mm^2", "published test", "default, with its gap"),
+    ("contact's area", "contact_region", "350 mm^2", "published test", "default"),
     ("attitude of a rolling ball", "object_motion", "frame of 21x21 dots",
      "published: ObjectMotion", "ObjectMotion, double, the default"),
     ("stick ratio", "stick_ratio", "frame of 21x21 dots", "published: StickRatio",

@@ -128,28 +128,34 @@ TEST_CASE("a round contact is found where it is", "[contact_region]") {
   }
 }
 
-TEST_CASE("what is nearer than the gap counts as touched", "[contact_region]") {
+TEST_CASE("what is nearer than the gap counts as touched, but bears nothing", "[contact_region]") {
   const Index size = pixels_for(6, 12, 0.16);
   const auto camera = height_map(size, size, 0.16);
   const RoundFilm film({});
   const auto depth = depths_of<float>(camera, film, size, size);
-  const double edge = radius_of(find(camera, depth, with_gap(with_ring(12), 0)).result);
-  double before = edge;
+  const auto seen_mm2 = [](const Found& found) {
+    return 0.16 * 0.16 * static_cast<double>(count(found.mask, Touch::contact));
+  };
+  const Found edge = find(camera, depth, with_gap(with_ring(12), 0));
+  CHECK(seen_mm2(edge) == Approx(edge.result.area_mm2));
+  double before = seen_mm2(edge);
   for (const double gap : {0.003, 0.01, 0.03}) {
-    const ContactResult found = find(camera, depth, with_gap(with_ring(12), gap)).result;
-    const double radius = radius_of(found);
-    CHECK(radius > before);
+    const Found found = find(camera, depth, with_gap(with_ring(12), gap));
+    const double seen = seen_mm2(found), beyond = seen - film.area_mm2();
+    CHECK(seen > before);
+    CHECK(found.result.area_mm2 == Approx(edge.result.area_mm2));
+    CHECK(found.result.center_mm.x == Approx(edge.result.center_mm.x).margin(1e-9));
     // without noise all doubt is where within the gap the contact ends
-    const double beyond_mm2 = found.area_mm2 - film.area_mm2();
-    CHECK(beyond_mm2 < 2 * found.area_sd_mm2);
-    CHECK(found.area_sd_mm2 < beyond_mm2);
-    const double one_minus_iou = beyond_mm2 / found.area_mm2;  // concentric
-    CHECK(found.expected_one_minus_iou() < one_minus_iou);
-    CHECK(one_minus_iou < 2.5 * found.expected_one_minus_iou());
+    CHECK(beyond < 2 * found.result.area_sd_mm2);
+    CHECK(found.result.area_sd_mm2 < beyond);
+    const double one_minus_iou = beyond / seen;  // concentric
+    CHECK(found.result.expected_one_minus_iou() < one_minus_iou);
+    CHECK(one_minus_iou < 2.5 * found.result.expected_one_minus_iou());
+    const double wider = std::sqrt(seen / std::numbers::pi) - radius_of(edge.result);
     const double law = std::sqrt(gap / film.free_per_mm);
-    CHECK(radius - edge > 0.9 * law);
-    CHECK(radius - edge < 1.1 * law);
-    before = radius;
+    CHECK(wider > 0.9 * law);
+    CHECK(wider < 1.1 * law);
+    before = seen;
   }
 }
 
@@ -480,7 +486,7 @@ TEST_CASE("area and center are those of the plainest loop", "[contact_region]") 
   pad.camera.center_y_px = 45.5;
   for (const double press_mm : {1.0, 2.5, 4.0}) {
     CAPTURE(press_mm);
-    const auto found = find(pad.camera, pad.pressed_depths(press_mm), with_ring(3));
+    const auto found = find(pad.camera, pad.pressed_depths(press_mm), with_gap(with_ring(3), 0));
     REQUIRE(found.result.contact_px > 100);
     Image<int> mask(pad.rows, pad.cols);
     std::transform(found.mask.cells.begin(), found.mask.cells.end(), mask.cells.begin(),

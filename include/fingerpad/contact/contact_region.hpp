@@ -47,9 +47,10 @@ struct ContactTest {
   /// edge includes free membrane, so the region is off by up to a ring's radius on all sides; it is
   /// faster, where only the place of the contact matters.
   bool places_edge = true;
-  /// Membrane nearer than this to the object counts as touched, in [0, 1]. This moves the placed
-  /// edge outward by sqrt(gap / jump of the mean curvature), about 0.5 mm at the default; a depth
-  /// map from 8-bit frames cannot distinguish such a gap from contact.
+  /// Membrane nearer than this to the object counts as touched, in [0, 1], but not as bearing load.
+  /// In the mask this moves the placed edge outward by sqrt(gap / jump of the mean curvature),
+  /// about 0.5 mm at the default; a depth map from 8-bit frames cannot distinguish such a gap from
+  /// contact.
   double touching_gap_mm = 0.02;
 };
 
@@ -73,8 +74,10 @@ struct [[nodiscard]] ContactResult {
   Index contact_px = 0;  ///< pixels in contact
   Index unknown_px = 0;  ///< pixels without depth, or with too few neighbours to decide
   Index regions = 0;     ///< connected parts of the contact
-  double area_mm2 = not_a_number<double>();  ///< at the contact's depth, projected on the plate
-  /// Standard deviation of the area: the touching gap, as a rigid object touches nothing of it, and
+  /// At the contact's depth, projected on the plate, without the touching gap: times the pressure
+  /// it is the load of a flat object. `contact_px` and the mask have the gap's membrane too.
+  double area_mm2 = not_a_number<double>();
+  /// Standard deviation of the area: the touching gap, of which a soft object may touch all, and
   /// the edge as the noise of the free membrane's curvature moves it. Where the edge is not placed,
   /// it may lie anywhere within the ring's radius.
   double area_sd_mm2 = not_a_number<double>();
@@ -90,10 +93,10 @@ struct [[nodiscard]] ContactResult {
   bool accepted() const { return status != FrameStatus::refused; }
   bool ok() const { return status == FrameStatus::ok; }
   bool in_contact() const { return contact_px > 0; }
-  /// What 1 - IoU with the true region is expected to be, in [0, 1]: an area that is wrong by its
-  /// standard deviation is so by its edge. NaN where nothing is found.
+  /// What 1 - IoU of the mask with the true region is expected to be, in [0, 1]: an area that is
+  /// wrong by its standard deviation is so by its edge. NaN where nothing is found.
   double expected_one_minus_iou() const {
-    return in_contact() ? 1 - std::exp(-area_sd_mm2 / area_mm2) : not_a_number<double>();
+    return in_contact() ? area_sd_mm2 / (area_mm2 + area_sd_mm2) : not_a_number<double>();
   }
 };
 
@@ -183,6 +186,7 @@ class ContactRegion {
             perimeter_mm(region, pitch_mm_) * test_.ring_px * pitch_mm_ / std::numbers::sqrt3;
         pressed_px += static_cast<double>(region.pixels());
       }
+      result.contact_px += region.pixels();
     });
     write(marks, to);
     measure(marks, depth, result);
@@ -225,9 +229,9 @@ class ContactRegion {
     using detail::Mark;
     if constexpr (std::is_same_v<Cell, Touch>) {
       const Touch other = mark == Mark::unknown ? Touch::unknown : Touch::none;
-      return mark == Mark::contact ? Touch::contact : other;
+      return mark >= Mark::contact ? Touch::contact : other;
     } else {
-      return static_cast<Cell>(mark == Mark::contact ? 255 : 0);
+      return static_cast<Cell>(mark >= Mark::contact ? 255 : 0);
     }
   }
 
@@ -367,15 +371,19 @@ class ContactRegion {
     }
     const S inside = found.quarter;
     const double jump = found.free_per_mm - static_cast<double>(value(inside));
-    const S share =
-        S(jump > 0 ? detail::share_at_end(jump, test_.touching_gap_mm, ring_mm, patch_mm,
-                                          static_cast<double>(spread_cols_) * pixel_mm)
-                   : 0.0);
-    const auto within = [&](Index at) {
-      return mean_[static_cast<std::size_t>(at)] < inside + share * (S(free_per_mm(at)) - inside);
+    const auto within = [&](double gap_mm) {
+      const S share =
+          S(jump > 0 ? detail::share_at_end(jump, gap_mm, ring_mm, patch_mm,
+                                            static_cast<double>(spread_cols_) * pixel_mm)
+                     : 0.0);
+      return [this, share, inside](Index at) {
+        return mean_[static_cast<std::size_t>(at)] < inside + share * (S(free_per_mm(at)) - inside);
+      };
     };
-    regions_.grow(region, (std::max)(ring_rows_, ring_cols_), within);
-    regions_.trim(region, within);
+    const auto touches = within(test_.touching_gap_mm);
+    regions_.grow(region, (std::max)(ring_rows_, ring_cols_), touches);
+    regions_.trim(region, touches);
+    regions_.mark_gap(region, within(0));
 
     // across a straight edge, the ring's mean rises by 4 / pi of the jump per ring radius; its
     // noise moves stretches of the edge as long as the ring is wide, each by itself
@@ -426,7 +434,6 @@ class ContactRegion {
                  static_cast<double>((right - left) * (down - up));
         };
         const double area = area_of(seen), positive_area = area > 0 ? area : area_of(level);
-        ++result.contact_px;
         result.area_mm2 += positive_area;
         moment += positive_area * point(i, j, depth);
       }

@@ -5,6 +5,7 @@
 // memory allocated up front. A pixel is in the queue at most once, and a region is a contiguous
 // part of the queue. Where a region ends: the share of the jump of the mean curvature, from the
 // object's to the free membrane's, that a ring measures (docs/contact/contact_region.md, the edge).
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,8 @@ namespace fingerpad {
 inline namespace v1 {
 namespace detail {
 
-/// State of a pixel while regions are found.
-enum class Mark : std::uint8_t { free, unknown, seed, contact };
+/// State of a pixel while regions are found; `gap`: in contact only by the touching gap.
+enum class Mark : std::uint8_t { free, unknown, seed, contact, gap };
 
 /// The first mark equal to `which` in [first, last), or last.
 inline const Mark* find_mark(const Mark* first, const Mark* last, Mark which) {
@@ -134,6 +135,15 @@ class Regions {
       }
     }
     region.end = tail_;
+  }
+
+  /// Marks the pixels of a region that do not fulfil `bears` as gap, unless none does.
+  template <class Bears>
+  void mark_gap(const Region& region, const Bears& bears) {
+    const auto begin = queue_.begin() + region.begin, end = queue_.begin() + region.end;
+    if (std::any_of(begin, end, bears)) {
+      std::for_each(begin, end, [&](Index at) { mark(at) = bears(at) ? mark(at) : Mark::gap; });
+    }
   }
 
  private:

@@ -154,10 +154,10 @@ struct FollowedDots {
   }
 };
 
-/// Whether the standard deviation of a region's area is a quarter of it, as that of a first touch
-/// is: nothing that rests on its edge is certain.
+/// Whether a quarter of a region may be none, as of a first touch: nothing that rests on its edge
+/// is certain.
 inline bool has_vague_edge(const ContactResult& contact) {
-  return 4 * contact.area_sd_mm2 > contact.area_mm2;
+  return contact.expected_one_minus_iou() > 0.25;
 }
 
 /// Slip and motion from the printed dots: all that a fingertip remembers from frame to frame.
@@ -234,7 +234,7 @@ struct FingertipDots {
   static double edge_sd_px(const ContactResult& contact) {
     const auto px = static_cast<double>(contact.contact_px);
     return contact.in_contact()
-               ? contact.area_sd_mm2 / contact.area_mm2 * std::sqrt(px / (4 * std::numbers::pi))
+               ? contact.expected_one_minus_iou() * std::sqrt(px / (4 * std::numbers::pi))
                : 0.0;
   }
 
