@@ -62,12 +62,11 @@ class DotGrowth {
 
   /// Drops labels that do not fit their neighbours and grows the others.
   void settle(Labels& labels) const {
-    constexpr int max_rounds = 5;
     drop_misfits(labels, largest_misfit);
-    // Dropped labels may grow again, and better, from the remaining ones.
-    for (int round = 0; round < max_rounds && grow(labels); ++round) {
-      drop_misfits(labels, largest_misfit);
+    // dropped labels may grow again, and better, from the remaining ones
+    while (claim(labels)) {
     }
+    drop_misfits(labels, largest_misfit);
   }
 
   /// Median distance of labelled spots from where their neighbours put them, in spacings.
@@ -80,7 +79,7 @@ class DotGrowth {
   /// Removes labels, the worst first, until none is off the position predicted by its neighbours by
   /// more than `max_misfit` of the spacing.
   void drop_misfits(Labels& labels, double max_misfit) const {
-    constexpr Index reach = Neighbours::reach;
+    constexpr Index reach = neighbour_reach;
     Table<double> misfits = misfits_of(labels);
     while (true) {
       const auto worst = std::max_element(misfits.cells().begin(), misfits.cells().end());
@@ -109,13 +108,12 @@ class DotGrowth {
 
   /// Position of a dot that moves like its neighbours, or like those in other rows or columns.
   Place expected(const Labels& labels, Index row, Index col, bool by_row, bool by_col) const {
-    return base_(row, col) + by_neighbours(labels.rows(), labels.cols(), row, col,
-                                           spacing_px_(row, col), [&](Index i, Index j) {
-                                             return labels(i, j) >= 0 && (by_row || i != row) &&
-                                                            (by_col || j != col)
-                                                        ? spots_[labels(i, j)] - base_(i, j)
-                                                        : no_place();
-                                           });
+    return base_(row, col) +
+           by_neighbours(labels.rows(), labels.cols(), row, col, [&](Index i, Index j) {
+             return labels(i, j) >= 0 && (by_row || i != row) && (by_col || j != col)
+                        ? spots_[labels(i, j)] - base_(i, j)
+                        : no_place();
+           });
   }
 
   /// A line of strange spots beside the print agrees with itself: labels at the border are judged
@@ -143,22 +141,9 @@ class DotGrowth {
     return misfits;
   }
 
-  /// Adds labels, first for dots with many labelled neighbours: these are predicted best. False if
-  /// nothing was added.
-  bool grow(Labels& labels) const {
-    constexpr int most = 3;
-    bool any = false;
-    for (int wanted = most; wanted >= least_neighbours;) {
-      const bool grown = claim(labels, wanted);
-      any = any || grown;
-      wanted = grown ? most : wanted - 1;
-    }
-    return any;
-  }
-
   /// Labels dots that have none but enough labelled neighbours, the best predicted first. False if
   /// no label was given.
-  bool claim(Labels& labels, int wanted) const {
+  bool claim(Labels& labels) const {
     struct Claim {
       double distance_px;
       Index row, col;
@@ -173,7 +158,8 @@ class DotGrowth {
     }
     for (Index i = 0; i < labels.rows(); ++i) {
       for (Index j = 0; j < labels.cols(); ++j) {
-        if (labels(i, j) < 0 && is_finite(base_(i, j)) && neighbours(labels, i, j) >= wanted) {
+        if (labels(i, j) < 0 && is_finite(base_(i, j)) &&
+            neighbours(labels, i, j) >= least_neighbours) {
           const auto hit =
               spots_.nearest(expected(labels, i, j, true, true), gate * spacing_px_(i, j));
           if (hit.spot >= 0) {
@@ -361,13 +347,11 @@ class DotPrint {
     }
     const Place move = spots[hit.spot] - free_(seed.row, seed.col);
     Labels& labels = answer.labels = growth.from(seed, move);
-    Labels sure = labels;  // few specks lie so well where a dot would be
-    growth.drop_misfits(sure, 0.15);
     // Dots where nothing is printed refute a shift, unless others miss more printed dots instead.
     const Table<char> unseen = unseen_of(labels, move);
     std::vector<Index> strange, wrong;
     for (const DotIndex& shift : shifts_) {
-      strange.push_back(count(sure, blank, shift));
+      strange.push_back(count(labels, blank, shift));
       wrong.push_back(strange.back() + missing(unseen, shift));
     }
     const Index least_strange = *std::min_element(strange.begin(), strange.end());
@@ -383,7 +367,7 @@ class DotPrint {
         answer.ambiguous = answer.ambiguous || is_rival(shifts_[k], *by, unseen);
       }
     }
-    answer.score = -count(sure, blank, *by);
+    answer.score = -count(labels, blank, *by);
     labels = window_of(labels, -by->row, -by->col, labels.rows(), labels.cols(), -1);
     bool changed = by->row != 0 || by->col != 0;
     for (std::size_t k = 0; k < labels.cells().size(); ++k) {

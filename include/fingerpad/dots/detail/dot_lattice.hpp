@@ -103,32 +103,11 @@ inline Places trimmed(const Places& dots) {
   return window_of(dots, top, left, bottom - top, right - left, no_place());
 }
 
-/// Median distance of a dot from the midpoint of its neighbours on both sides, in pitches. It
-/// rejects random spots, which can be given rows and columns but are not regular.
-inline double unevenness(const Places& dots) {
-  std::vector<double> off;
-  for (Index i = 0; i < dots.rows(); ++i) {
-    for (Index j = 0; j < dots.cols(); ++j) {
-      for (const auto& [down, right] : {std::pair<Index, Index>{1, 0}, {0, 1}}) {
-        if (dots.contains(i - down, j - right) && dots.contains(i + down, j + right)) {
-          const Place bend =
-              0.5 * (dots(i - down, j - right) + dots(i + down, j + right)) - dots(i, j);
-          if (is_finite(bend)) {
-            off.push_back(norm(bend));
-          }
-        }
-      }
-    }
-  }
-  return off.empty() ? 0.0 : median(off) / pitch_of(dots);
-}
-
 /// The spots that lie in rows and columns, at their row and column; empty if there is no such grid.
 /// Spots between the rows are left out. O(spots^2) time.
 inline Places lattice_of(const std::vector<Place>& spots) {
   constexpr std::size_t max_spots = 1200;  // more are image noise
-  constexpr double max_uneven = 0.15;
-  constexpr double max_extent = 100;  // rows or columns to each side
+  constexpr double max_extent = 100;       // rows or columns to each side
   if (spots.size() < static_cast<std::size_t>(min_lattice_dots) || spots.size() > max_spots) {
     return {};
   }
@@ -159,8 +138,8 @@ inline Places lattice_of(const std::vector<Place>& spots) {
     }
   }
   const Places dots = trimmed(places_of(DotGrowth(regular, map).from(first, Place{0, 0}), map));
-  const bool is_grid = dots.rows() > 1 && dots.cols() > 1 &&
-                       count_present(dots) >= min_lattice_dots && unevenness(dots) <= max_uneven;
+  const bool is_grid =
+      dots.rows() > 1 && dots.cols() > 1 && count_present(dots) >= min_lattice_dots;
   return is_grid ? dots : Places();
 }
 

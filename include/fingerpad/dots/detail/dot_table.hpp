@@ -4,7 +4,6 @@
 // Shared parts of the dot finder: a grid that owns its cells, a nearest-neighbour search among the
 // spots of a frame, and interpolation of a dot from its neighbours.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -17,6 +16,7 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v1 {
@@ -93,109 +93,34 @@ class SpotMap {
   std::vector<int> order_;
 };
 
-/// Values of the dots around a dot, at most 2 rows and columns away.
-class Neighbours {
- public:
-  static constexpr Index reach = 2;
+/// Rows and columns to each side of a dot whose dots say where it is.
+constexpr Index neighbour_reach = 2;
 
-  void add(Index down, Index right, const Place& value) {
-    rows_[count_] = static_cast<double>(down);
-    cols_[count_] = static_cast<double>(right);
-    values_[count_++] = value;
-  }
-
-  /// Value at the middle of a plane fitted to the values; NaN if there are fewer than three. Near
-  /// values weigh more. If one is off the plane by more than a tenth of `scale`, those off the
-  /// median by `scale` or more weigh less.
-  Place at_middle(double scale) const {
-    if (count_ < 3) {
-      return no_place();
-    }
-    std::array<double, most> weights;
-    for (std::size_t k = 0; k < count_; ++k) {
-      weights[k] = 1 / (rows_[k] * rows_[k] + cols_[k] * cols_[k]);
-    }
-    const Plane plane = fit(weights);
-    double farthest = 0;
-    for (std::size_t k = 0; k < count_; ++k) {
-      const Place at = plane.middle + rows_[k] * plane.by_row + cols_[k] * plane.by_col;
-      farthest = (std::max)(farthest, squared_norm(values_[k] - at));
-    }
-    if (farthest < 0.01 * scale * scale) {
-      return plane.middle;
-    }
-    const Place middle = middle_of_values();
-    for (std::size_t k = 0; k < count_; ++k) {
-      const double off_sq = squared_norm(values_[k] - middle) / (scale * scale);
-      weights[k] /= 1 + off_sq * off_sq;
-    }
-    return fit(weights).middle;
-  }
-
- private:
-  static constexpr std::size_t most = (2 * reach + 1) * (2 * reach + 1) - 1;
-
-  struct Plane {
-    Place middle, by_row, by_col;
-  };
-
-  /// A small ridge term on the slopes keeps the fit stable for neighbours in one line.
-  Plane fit(const std::array<double, most>& weights) const {
-    constexpr double hold = 0.05;
-    double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
-    Place b{0, 0}, br{0, 0}, bc{0, 0};
-    for (std::size_t k = 0; k < count_; ++k) {
-      const double by_row = weights[k] * rows_[k];
-      const double by_col = weights[k] * cols_[k];
-      s += weights[k];
-      r += by_row;
-      c += by_col;
-      rr += by_row * rows_[k];
-      rc += by_row * cols_[k];
-      cc += by_col * cols_[k];
-      b += weights[k] * values_[k];
-      br += by_row * values_[k];
-      bc += by_col * values_[k];
-    }
-    // The inverse of [s r c; r rr rc; c rc cc], by cofactors.
-    const double at_b = rr * cc - rc * rc, at_br = c * rc - r * cc, at_bc = r * rc - c * rr;
-    const double by_rr = s * cc - c * c, by_rc = r * c - s * rc, by_cc = s * rr - r * r;
-    const double det = s * at_b + r * at_br + c * at_bc;
-    return {(at_b * b + at_br * br + at_bc * bc) / det, (at_br * b + by_rr * br + by_rc * bc) / det,
-            (at_bc * b + by_rc * br + by_cc * bc) / det};
-  }
-
-  Place middle_of_values() const {
-    std::array<double, most> x{}, y{};
-    for (std::size_t k = 0; k < count_; ++k) {
-      x[k] = values_[k].x;
-      y[k] = values_[k].y;
-    }
-    return {median({x.data(), count_}), median({y.data(), count_})};
-  }
-
-  std::size_t count_ = 0;
-  std::array<double, most> rows_{}, cols_{};
-  std::array<Place, most> values_{};
-};
-
-/// Value at (row, col) interpolated from the dots around it; `value_at(i, j)` is NaN if unknown.
+/// Value at (row, col) of the plane through the values of the dots around it, near ones weigh more;
+/// NaN if fewer than three are known. `value_at(i, j)` is NaN if unknown.
 template <class ValueAt>
-Place by_neighbours(
-    Index rows, Index cols, Index row, Index col, double scale, const ValueAt& value_at) {
-  constexpr Index reach = Neighbours::reach;
-  Neighbours around;
+Place by_neighbours(Index rows, Index cols, Index row, Index col, const ValueAt& value_at) {
+  constexpr double hold = 0.05;  // on the slopes, for neighbours in one line
+  constexpr Index reach = neighbour_reach;
+  ProductSums<double, 5> sums;
+  int count = 0;
   for (Index i = (std::max)(row - reach, Index{0}); i <= (std::min)(row + reach, rows - 1); ++i) {
     for (Index j = (std::max)(col - reach, Index{0}); j <= (std::min)(col + reach, cols - 1); ++j) {
-      if (i != row || j != col) {
-        const Place value = value_at(i, j);
-        if (is_finite(value)) {
-          around.add(i - row, j - col, value);
-        }
+      const Place value = i == row && j == col ? no_place() : value_at(i, j);
+      if (is_finite(value)) {
+        const auto down = static_cast<double>(i - row), right = static_cast<double>(j - col);
+        const double root = 1 / std::hypot(down, right);
+        sums.add({root, root * down, root * right, root * value.x, root * value.y});
+        ++count;
       }
     }
   }
-  return around.at_middle(scale);
+  SmallMatrix<double, 3> a = sums.corner<3>();
+  a[1][1] += hold;
+  a[2][2] += hold;
+  const NormalEquations<double, 3> plane(a);
+  return count < 3 ? no_place()
+                   : Place{plane.solve(sums.column<3>(3))[0], plane.solve(sums.column<3>(4))[0]};
 }
 
 /// Distance of each dot to the nearest of its four neighbours; the mean of all where it has none.
@@ -269,7 +194,6 @@ inline Places flattened(const Places& dots) {
 /// continues that of their neighbours.
 inline Places completed(Places dots) {
   const Places base = flattened(dots);
-  const Table<double> spacing_px = spacings_px(base);
   for (bool grown = true; grown;) {
     grown = false;
     const Places known = dots;
@@ -277,7 +201,7 @@ inline Places completed(Places dots) {
       for (Index j = 0; j < dots.cols(); ++j) {
         if (!is_finite(known(i, j))) {
           dots(i, j) = base(i, j) +
-                       by_neighbours(dots.rows(), dots.cols(), i, j, spacing_px(i, j),
+                       by_neighbours(dots.rows(), dots.cols(), i, j,
                                      [&](Index r, Index c) { return known(r, c) - base(r, c); });
           grown = grown || is_finite(dots(i, j));
         }
