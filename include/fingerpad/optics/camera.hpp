@@ -90,6 +90,12 @@ S reach_mm(const Camera<S>& camera, const S& t_sq, const S& depth_mm) {
          camera.plate_thickness_mm * tangent_ratio(t_sq, camera.plate_index) +
          depth_mm * tangent_ratio(t_sq, camera.refractive_index);
 }
+/// The same near the axis, where t = 0.
+template <scalar S>
+S paraxial_reach_mm(const Camera<S>& camera, const S& depth_mm) {
+  return camera.plate_distance_mm - camera.plate_thickness_mm +
+         camera.plate_thickness_mm / camera.plate_index + depth_mm / camera.refractive_index;
+}
 }  // namespace detail
 
 /// The ray of one pixel, as the depth model needs it, and the pencil of light that comes back along
@@ -138,14 +144,13 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
 /// Tangent per pixel of distance from the center pixel, along a row, near the axis.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
-  return camera.pitch_mm / detail::reach_mm(camera, S(0), S(0));
+  return camera.pitch_mm / detail::paraxial_reach_mm(camera, S(0));
 }
 
 /// c: at depth l, pixels near the axis see points that are pitch_mm (1 + c l) apart along x.
 template <scalar S>
 S growth_per_mm(const Camera<S>& camera) {
-  return tangent_per_px(camera) / camera.pitch_mm *
-         detail::tangent_ratio(S(0), camera.refractive_index);
+  return tangent_per_px(camera) / camera.pitch_mm / camera.refractive_index;
 }
 
 namespace detail {
@@ -231,12 +236,12 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S rho_sq = point.x * point.x + point.y * point.y;
   const S rho = value(rho_sq) == 0 ? S(0) : sqrt(rho_sq);
-  S reach = detail::reach_mm(camera, S(0), point.z);
+  S reach = detail::paraxial_reach_mm(camera, point.z);
   S t = rho / reach;
   for (int step = 0; step <= 8; ++step) {
     const S t_sq = t * t;
     const S fluid = detail::tangent_ratio(t_sq, n), plate = detail::tangent_ratio(t_sq, m);
-    reach = detail::reach_mm(camera, t_sq, point.z);
+    reach = in_air + camera.plate_thickness_mm * plate + point.z * fluid;
     // d/dt of t / sqrt(n^2 + (n^2 - 1) t^2) is n^2 / (...)^(3/2)
     const S slope = in_air + camera.plate_thickness_mm * m * m * plate * plate * plate +
                     point.z * n * n * fluid * fluid * fluid;
