@@ -4,8 +4,8 @@
 // Shape and irregularity of the object. Within the contact the membrane lies on the object, so the
 // depth map there is the object's own surface. Source: Ito, Kim, Obinata, "Shape sensing by
 // vision-based tactile sensor for dexterous handling of robot hands" (slides), which name shape and
-// irregularity but give no equations. Here a quadric is fitted. Its frame has the origin at the
-// centroid of the contact, w along the normal of the plane of least squares, and u and v in it:
+// irregularity but give no equations. Here a quadric is fitted. Its frame has the origin in the
+// middle of the contact, w along the normal of the plane through its depths, and u and v in it:
 //
 //   w = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2 + g w^2
 //
@@ -102,50 +102,49 @@ SurfaceResult fit_surface(const CameraType<S>& camera, const Depth& depth_mm, co
     return result;
   }
   using Point = Point3<double>;
-  const auto for_each_point = [&, eye = cast<double>(camera)](const auto& visit) {
-    for (Index i = 0; i < depth.rows(); ++i) {
+  const auto for_each_depth = [&](Index top, Index bottom, const auto& visit) {
+    for (Index i = top; i < bottom; ++i) {
       for (Index j = 0; j < depth.cols(); ++j) {
-        if (is_contact(cell_t<Mask>(mask(i, j)))) {
-          const Point2<double> px = {static_cast<double>(j), static_cast<double>(i)};
-          const auto p = point_at(eye, px.y, px.x, static_cast<double>(value(depth(i, j))));
-          if (is_depth(p.z)) {
-            visit(p, px);
-          }
+        if (is_contact(cell_t<Mask>(mask(i, j))) && is_depth(depth(i, j))) {
+          visit(static_cast<double>(i), static_cast<double>(j),
+                static_cast<double>(value(depth(i, j))));
         }
       }
     }
   };
-  // the frame: the centroid and the best plane; digits are kept relative to the first point
-  Point first = {0, 0, 0};
-  Point2<double> first_px = {0, 0};
-  detail::ProductSums<double, 3> pixels;  // of 1, row, column
-  detail::ProductSums<double, 4> points;  // of 1, x, y, z
-  for_each_point([&](const Point& p, const Point2<double>& px) {
-    if (result.pixels++ == 0) {
-      first = p;
-      first_px = px;
-    }
-    const Point q = p - first;
-    pixels.add({1, px.y - first_px.y, px.x - first_px.x});
-    points.add({1, q.x, q.y, q.z});
+  // the frame: about the middle of the contact, on the plane through the depths; digits are kept
+  // relative to the first pixel
+  std::array<double, 3> first = {}, last = {};
+  detail::ProductSums<double, 4> pixels;  // of 1, row, column, depth
+  for_each_depth(0, depth.rows(), [&](double row, double col, double z) {
+    last = {row, col, z};
+    first = result.pixels++ == 0 ? last : first;
+    pixels.add({1, row - first[0], col - first[1], z - first[2]});
   });
-  const bool is_line = !detail::NormalEquations<double, 3>(pixels.corner<3>()).good;
-  if (result.pixels <= 6 || is_line) {
+  const detail::NormalEquations<double, 3> plane(pixels.corner<3>());
+  if (result.pixels <= 6 || !plane.good) {
     return result;
   }
   const double count = static_cast<double>(result.pixels);
-  const Point center = first + Point{points(0, 1), points(0, 2), points(0, 3)} / count;
-  const auto plane =
-      detail::NormalEquations<double, 3>(points.corner<3>()).solve(points.column<3>(3));
-  const Point w = normalized(Point{-plane[1], -plane[2], 1});
+  const auto seen = [eye = cast<double>(camera)](double row, double col, double z) {
+    return point_at(eye, row, col, z);
+  };
+  const double row = first[0] + pixels(0, 1) / count, col = first[1] + pixels(0, 2) / count;
+  const double z = first[2] + pixels(0, 3) / count;
+  const auto slope = plane.solve(pixels.column<3>(3));
+  const Point center = seen(row, col, z);
+  const Point w =
+      normalized(cross(seen(row, col + 1, z + slope[2]) - seen(row, col - 1, z - slope[2]),
+                       seen(row + 1, col, z + slope[1]) - seen(row - 1, col, z - slope[1])));
   const auto [u, v] = detail::tangents(w);
   const auto outside = [&, u = u, v = v](const Point& d) { return d.x * u + d.y * v + d.z * w; };
 
   detail::ProductSums<double, 8> sums;
-  for_each_point([&, u = u, v = v](const Point& p, const Point2<double>&) {
-    const Point q = p - center;
-    const double x = dot(u, q), y = dot(v, q), z = dot(w, q);
-    sums.add({1, x, y, x * x, x * y, y * y, z, z * z});
+  const Index top = static_cast<Index>(first[0]), bottom = static_cast<Index>(last[0]) + 1;
+  for_each_depth(top, bottom, [&, u = u, v = v](double i, double j, double l) {
+    const Point q = seen(i, j, l) - center;
+    const double x = dot(u, q), y = dot(v, q), h = dot(w, q);
+    sums.add({1, x, y, x * x, x * y, y * y, h, h * h});
   });
   const detail::QuadricFit fit(sums);
 

@@ -119,13 +119,17 @@ struct ProductSums {
   SmallMatrix<S, N> sum = zero_matrix<S, N>();
 
   void add(const std::array<S, N>& term) {
+#pragma GCC unroll 8
     for (std::size_t a = 0; a < N; ++a) {
-      for (std::size_t b = 0; b < N; ++b) {
+#pragma GCC unroll 8
+      for (std::size_t b = a; b < N; ++b) {
         sum[a][b] = sum[a][b] + term[a] * term[b];
       }
     }
   }
-  const S& operator()(std::size_t a, std::size_t b) const { return sum[a][b]; }
+  const S& operator()(std::size_t a, std::size_t b) const {
+    return a < b ? sum[a][b] : sum[b][a];
+  }
   template <std::size_t M>
   std::array<S, M> column(std::size_t b) const {
     std::array<S, M> all = zeros<S, M>();
