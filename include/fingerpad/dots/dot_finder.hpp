@@ -309,7 +309,7 @@ class DotFinder {
       const double pitch_px = detail::pitch_of(one.dots);
       for (const Place& spot : spots) {
         const auto hit = map.nearest(spot, 2.5 * pitch_px);
-        one.beside += hit.spot >= 0 && hit.distance_px > 0 ? 1 : 0;
+        one.beside += hit.spot >= 0 && hit.distance_px > look.radius_px ? 1 : 0;
       }
       one.spot = finder.learn(frame, dots);
       const auto count = static_cast<double>(dots.size());
@@ -320,11 +320,10 @@ class DotFinder {
   }
 
   /// Tries radii, if none is given, and both signs (dark, bright). The grid with the best score is
-  /// looked for again with the radius and the blur that its dots have, as long as the score stays
-  /// at 90 % or more of the last one.
+  /// looked for again with the radius and the blur that its dots have; that counts if the score
+  /// stays at 90 % or more.
   static Attempt search(const cv::Mat& frame, const DotFinderOptions& options) {
     constexpr double smallest_px = 1, step = 1.4;
-    constexpr int rounds = 2;
     const DotPattern& given = options.pattern;
     const bool known = given.radius_px > 0;
     const double largest_px = known ? given.radius_px : (std::min)(frame.cols, frame.rows) / 8.0;
@@ -339,17 +338,11 @@ class DotFinder {
         }
       }
     }
-    for (int round = 0; round < rounds && best.spot.radius_px > 0; ++round) {
-      detail::SpotLook look = best.look;
-      look.radius_px = known ? given.radius_px : (std::max)(best.spot.radius_px, 1.0);
-      look.edge_px = best.spot.edge_px;
-      const Attempt next = attempt(frame, options, look);
-      if (next.score < 0.9 * best.score) {
-        break;
-      }
-      best = next;
-    }
-    return best;
+    detail::SpotLook look = best.look;
+    look.radius_px = known ? given.radius_px : (std::max)(best.spot.radius_px, 1.0);
+    look.edge_px = best.spot.edge_px;
+    const Attempt again = best.score > 0 ? attempt(frame, options, look) : best;
+    return again.score < 0.9 * best.score ? best : again;
   }
 
   cv::Size size_;

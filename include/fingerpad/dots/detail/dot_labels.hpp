@@ -347,11 +347,13 @@ class DotPrint {
     }
     const Place move = spots[hit.spot] - free_(seed.row, seed.col);
     Labels& labels = answer.labels = growth.from(seed, move);
+    Labels sure = labels;  // few specks lie so well where a dot would be
+    growth.drop_misfits(sure, 0.15);
     // Dots where nothing is printed refute a shift, unless others miss more printed dots instead.
     const Table<char> unseen = unseen_of(labels, move);
     std::vector<Index> strange, wrong;
     for (const DotIndex& shift : shifts_) {
-      strange.push_back(count(labels, blank, shift));
+      strange.push_back(count(sure, blank, shift));
       wrong.push_back(strange.back() + missing(unseen, shift));
     }
     const Index least_strange = *std::min_element(strange.begin(), strange.end());
@@ -367,7 +369,7 @@ class DotPrint {
         answer.ambiguous = answer.ambiguous || is_rival(shifts_[k], *by, unseen);
       }
     }
-    answer.score = -count(labels, blank, *by);
+    answer.score = -count(sure, blank, *by);
     labels = window_of(labels, -by->row, -by->col, labels.rows(), labels.cols(), -1);
     bool changed = by->row != 0 || by->col != 0;
     for (std::size_t k = 0; k < labels.cells().size(); ++k) {

@@ -203,14 +203,13 @@ class SpotFinder {
     const auto least = static_cast<float>(0.25 * look_.min_contrast);
     cv::Mat_<float> highest;
     cv::dilate(response, highest, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
-    const double near_px = fine_ * (reach + 0.5);
-    const auto is_beside = [&](const Place& other, const Place& peak) {
-      return std::abs(other.x - peak.x) < near_px && std::abs(other.y - peak.y) < near_px;
-    };
     for (int i = 1; i + 1 < response.rows; ++i) {
       for (int j = 1; j + 1 < response.cols; ++j) {
         const float here = response(i, j);
-        if (here > least && here == highest(i, j)) {  // none within reach is higher
+        // none within reach is higher, and of neighbours that are equal it is the first
+        if (here > least && here == highest(i, j) && here > response(i, j - 1) &&
+            here > response(i - 1, j - 1) && here > response(i - 1, j) &&
+            here > response(i - 1, j + 1)) {
           const auto off = [&](float before, float after) {
             const float bend = 2 * here - before - after;
             return bend > 0 ? 0.5 * static_cast<double>((after - before) / bend) : 0.0;
@@ -220,11 +219,7 @@ class SpotFinder {
                                   fine_);
           const cv::Point at(cvRound(peak.x), cvRound(peak.y));
           const bool counts = where_.empty() || where_(at) != 0;
-          // Neighbouring peak pixels of equal height are one spot.
-          const auto above = std::find_if(found.rbegin(), found.rend(), [&](const Place& other) {
-            return other.y <= peak.y - 2 * near_px || is_beside(other, peak);
-          });
-          if (counts && (above == found.rend() || !is_beside(*above, peak))) {
+          if (counts) {
             found.push_back(peak);
           }
         }

@@ -100,7 +100,6 @@ constexpr Index neighbour_reach = 2;
 /// NaN if fewer than three are known. `value_at(i, j)` is NaN if unknown.
 template <class ValueAt>
 Place by_neighbours(Index rows, Index cols, Index row, Index col, const ValueAt& value_at) {
-  constexpr double hold = 0.05;  // on the slopes, for neighbours in one line
   constexpr Index reach = neighbour_reach;
   ProductSums<double, 5> sums;
   int count = 0;
@@ -116,8 +115,9 @@ Place by_neighbours(Index rows, Index cols, Index row, Index col, const ValueAt&
     }
   }
   SmallMatrix<double, 3> a = sums.corner<3>();
-  a[1][1] += hold;
-  a[2][2] += hold;
+  for (const std::size_t slope : {1U, 2U}) {
+    a[slope][slope] += 0.05;  // for neighbours in one line
+  }
   const NormalEquations<double, 3> plane(a);
   return count < 3 ? no_place()
                    : Place{plane.solve(sums.column<3>(3))[0], plane.solve(sums.column<3>(4))[0]};
