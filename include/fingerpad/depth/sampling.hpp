@@ -85,44 +85,51 @@ class SampleBlock {
   /// Takes in the samples from (row, col) of the frame on, `n` pixels wide.
   template <class Red, class Green>
   void read(const Red& red, const Green& green, Index row, Index col, Index n) {
-    red_ = green_ = {};
-    count_ = bright_ = {};
-    std::array<Pixel, pixels> red_row = {}, green_row = {};
-    for (Index k = row; k < row + step(); ++k) {
-      load_pixels(red, green, k, col, n, red_row.data(), green_row.data());
+    if (Step == 0) {
+      red_ = green_ = {};
+      count_ = bright_ = {};
+    }
+    for (Index k = 0; k < step(); k += Index(rows)) {
+      for (std::size_t i = 0; i < rows; ++i) {
+        load_pixels(red, green, row + k + Index(i), col, n, &reds_[i * pixels],
+                    &greens_[i * pixels]);
+      }
       for (std::size_t at = 0; at < samples * across(); at += samples) {
-        add(&red_row[at], &green_row[at], &red_[at], &green_[at], &count_[at], &bright_[at]);
+        add(&reds_[at], &greens_[at], &red_[at], &green_[at], &count_[at], &bright_[at]);
       }
     }
   }
 
   /// Writes `samples` samples of both channels.
   void write(std::uint16_t* to_red, std::uint16_t* to_green) const {
-    std::uint8_t lost = 0;
-    for (std::size_t k = 0; k < samples * across(); ++k) {
-      lost = static_cast<std::uint8_t>(lost | (count_[k] ^ across()));
+    std::uint64_t lost = 0;
+    for (std::size_t k = 0; k < samples * across(); k += 8) {
+      lost |= load<std::uint64_t>(&count_[k]) ^ (0x0101010101010101U * across());
     }
-    if (lost == 0) {  // a constant divisor needs no division
-      const auto all = static_cast<std::uint32_t>(step() * step());
-      for (std::size_t j = 0; j < samples; ++j) {
-        to_red[j] = mean(sum_of(red_, j), all);
-      }
-      for (std::size_t j = 0; j < samples; ++j) {
-        to_green[j] = mean(sum_of(green_, j), all);
-      }
+    if (lost == 0) {
+      whole(red_.data(), step(), to_red);
+      whole(green_.data(), step(), to_green);
       return;
     }
+    const auto all = static_cast<std::uint32_t>(step() * step());
     for (std::size_t j = 0; j < samples; ++j) {
-      const std::uint32_t count = sum_of(count_, j);
-      const auto none = static_cast<std::uint16_t>(
-          sum_of(bright_, j) > 0 ? grey_scale_of<std::uint16_t>().saturated : 0);
-      to_red[j] = count > 0 ? mean(sum_of(red_, j), count) : none;
-      to_green[j] = count > 0 ? mean(sum_of(green_, j), count) : none;
+      const std::uint32_t count = sum_of(count_.data(), j, step());
+      if (count == 0) {
+        to_red[j] = to_green[j] = sum_of(bright_.data(), j, step()) > 0
+                                      ? std::uint16_t(grey_scale_of<std::uint16_t>().saturated)
+                                      : std::uint16_t(0);
+        continue;
+      }
+      const std::uint32_t red = sum_of(red_.data(), j, step());
+      const std::uint32_t green = sum_of(green_.data(), j, step());
+      to_red[j] = count == all ? mean(red, all) : mean(red, count);
+      to_green[j] = count == all ? mean(green, all) : mean(green, count);
     }
   }
 
  private:
   static constexpr std::size_t pixels = samples * (Step > 0 ? Step : 16);
+  static constexpr std::size_t rows = Step > 0 ? Step : 1;  // read at once
   using Column = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
 
   constexpr int step() const { return Step > 0 ? Step : step_; }
@@ -133,7 +140,7 @@ class SampleBlock {
     return static_cast<std::uint16_t>((sum * units + count / 2) / count);
   }
 
-  /// Adds 64 pixels of a row to their columns, leaving out those without information.
+  /// Adds 64 pixels of some rows to their columns, leaving out those without information.
   [[gnu::noinline]] static void add(const Pixel* __restrict reds,
                                     const Pixel* __restrict greens,
                                     Column* __restrict red_sums,
@@ -141,37 +148,57 @@ class SampleBlock {
                                     std::uint8_t* __restrict counts,
                                     std::uint8_t* __restrict brights) {
     constexpr auto top = static_cast<Pixel>(grey_scale_of<Pixel>().saturated), dark = Pixel(0);
-    std::array<Pixel, samples> keep;  // all bits, or none
     for (std::size_t i = 0; i < samples; ++i) {
-      const auto bright = static_cast<Pixel>(-int((reds[i] >= top) | (greens[i] >= top)));
-      const auto black = static_cast<Pixel>(-int((reds[i] <= dark) | (greens[i] <= dark)));
-      brights[i] = static_cast<std::uint8_t>(brights[i] | (bright & 1));
-      keep[i] = static_cast<Pixel>(~(bright | black));
-      counts[i] = static_cast<std::uint8_t>(counts[i] + (keep[i] & 1));
+      Column red = Step > 0 ? Column(0) : red_sums[i], green = Step > 0 ? Column(0) : green_sums[i];
+      std::uint8_t count = Step > 0 ? std::uint8_t(0) : counts[i];
+      std::uint8_t any_bright = Step > 0 ? std::uint8_t(0) : brights[i];
+      [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
+        const auto one = [&](Pixel r, Pixel g) __attribute__((always_inline)) {
+          const auto bright = static_cast<Pixel>(-int((r >= top) | (g >= top)));
+          const auto black = static_cast<Pixel>(-int((r <= dark) | (g <= dark)));
+          const auto keep = static_cast<Pixel>(~(bright | black));  // all bits, or none
+          any_bright = static_cast<std::uint8_t>(any_bright | (bright & 1));
+          count = static_cast<std::uint8_t>(count + (keep & 1));
+          red = static_cast<Column>(red + static_cast<Column>(r & keep));
+          green = static_cast<Column>(green + static_cast<Column>(g & keep));
+        };
+        (one(reds[K * pixels + i], greens[K * pixels + i]), ...);
+      }
+      (std::make_index_sequence<rows>{});
+      red_sums[i] = red;
+      green_sums[i] = green;
+      counts[i] = count;
+      brights[i] = any_bright;
     }
-    for (std::size_t i = 0; i < samples; ++i) {
-      red_sums[i] = static_cast<Column>(red_sums[i] + static_cast<Column>(reds[i] & keep[i]));
-    }
-    for (std::size_t i = 0; i < samples; ++i) {
-      green_sums[i] = static_cast<Column>(green_sums[i] + static_cast<Column>(greens[i] & keep[i]));
+  }
+
+  /// Means of samples all of whose pixels count: a constant divisor needs no division.
+  [[gnu::noinline]] static void whole(const Column* __restrict sums,
+                                      int step,
+                                      std::uint16_t* __restrict to) {
+    const auto all = static_cast<std::uint32_t>(Step > 0 ? Step * Step : step * step);
+    for (std::size_t j = 0; j < samples; ++j) {
+      to[j] = mean(sum_of(sums, j, step), all);
     }
   }
 
   /// Sum over the columns of sample j.
-  template <class Cells>
-  [[gnu::always_inline]] std::uint32_t sum_of(const Cells& cells, std::size_t j) const {
+  template <class Cell>
+  [[gnu::always_inline]] static std::uint32_t sum_of(const Cell* cells, std::size_t j, int step) {
     if constexpr (Step > 0) {  // no loop, so that the one over the samples becomes vectors
       return [&]<std::size_t... K>(std::index_sequence<K...>) __attribute__((always_inline)) {
         return (std::uint32_t(0) + ... + std::uint32_t(cells[j * std::size_t(Step) + K]));
       }
       (std::make_index_sequence<std::size_t(Step)>{});
     } else {
-      return std::accumulate(&cells[j * across()], &cells[j * across()] + step(), std::uint32_t(0));
+      cells += j * static_cast<std::size_t>(step);
+      return std::accumulate(cells, cells + step, std::uint32_t(0));
     }
   }
 
   int step_;
-  std::array<Column, pixels> red_, green_;           // sums of each column
+  std::array<Pixel, (rows * pixels)> reds_ = {}, greens_ = {};  // zeros beyond a narrow frame
+  std::array<Column, pixels> red_, green_;                      // sums of each column
   std::array<std::uint8_t, pixels> count_, bright_;  // pixels that count; whether any is too bright
 };
 
