@@ -56,7 +56,7 @@ class DepthPolynomial {
                 "rows of depth are computed in float or double: use newton_depth() for other "
                 "scalars");
   static constexpr bool is_float = sizeof(S) == 4;
-  static constexpr int degree = is_float ? 6 : 11;
+  static constexpr int degree = is_float ? 6 : 12;
   static constexpr int radial = is_float ? 3 : 8;
   static constexpr int steps = is_float ? 1 : 2;  ///< Halley's cubes the error, .06 mm at first,
                                                   ///< and Newton's after it squares what is left
