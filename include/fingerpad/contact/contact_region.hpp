@@ -87,7 +87,7 @@ struct [[nodiscard]] ContactResult {
   /// placed, all of the area.
   double pressed_mm2 = not_a_number<double>();
   Point3<double> center_mm = {not_a_number<double>(), not_a_number<double>(),
-                              not_a_number<double>()};  ///< centroid of that area
+                              not_a_number<double>()};  ///< centroid; z over all that is touched
   double depth_mm = not_a_number<double>();  ///< D: free apex height less mean height of contact
 
   bool accepted() const { return status != FrameStatus::refused; }
@@ -413,13 +413,14 @@ class ContactRegion {
                ContactResult& result) const {
     using detail::Mark;
     Point3<double> moment = {0, 0, 0};
+    double touched_mm2 = 0, height_mm3 = 0;  // with the touching gap
     for (Index i = 0; i < image_.rows; ++i) {
       const Index up = (std::max)(i - 1, Index(0)), down = (std::min)(i + 1, image_.rows - 1);
       const Mark* row = marks.row(i);
-      const Mark* end = row + image_.cols;
-      for (const Mark* at = detail::find_mark(row, end, Mark::contact); at != end;
-           at = detail::find_mark(at + 1, end, Mark::contact)) {
-        const Index j = at - row;
+      for (Index j = 0; j < image_.cols; ++j) {
+        if (row[j] < Mark::contact) {
+          continue;
+        }
         const Index left = (std::max)(j - 1, Index(0)), right = (std::min)(j + 1, image_.cols - 1);
         const double depth = static_cast<double>(depth_mm(i, j));
         const auto seen = [&](Index r, Index c) {
@@ -434,12 +435,17 @@ class ContactRegion {
                  static_cast<double>((right - left) * (down - up));
         };
         const double area = area_of(seen), positive_area = area > 0 ? area : area_of(level);
-        result.area_mm2 += positive_area;
-        moment += positive_area * point(i, j, depth);
+        touched_mm2 += positive_area;
+        height_mm3 += positive_area * depth;
+        if (row[j] == Mark::contact) {
+          result.area_mm2 += positive_area;
+          moment += positive_area * point(i, j, depth);
+        }
       }
     }
     if (result.in_contact()) {
-      result.center_mm = moment / result.area_mm2;
+      result.center_mm = {moment.x / result.area_mm2, moment.y / result.area_mm2,
+                          height_mm3 / touched_mm2};
       result.depth_mm = test_.free_apex_mm - result.center_mm.z;
     }
   }
