@@ -321,7 +321,7 @@ Outcome rim_by_weight(const Path& recording,
     replay::DotSource dots(recording, seen.sensor, seen.reference, seen.reference_depth,
                            seen.frames.size());
     const auto settings = replay::fingertip_settings(seen, dots.initial());
-    replay::RecordedFingertip fingertip(settings);
+    replay::RecordedFingertip fingertip(settings.options);
     double press_n = 0, frames = 0;
     for (int k = 0; k < seen.frames.size(); ++k) {
       const cv::Mat frame = seen.frames.next();

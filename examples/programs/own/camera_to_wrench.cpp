@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   replay::DotSource dots(folder, recording.sensor, recording.reference, recording.reference_depth,
                          recording.frames.size());
   const auto settings = replay::fingertip_settings(recording, dots.initial());
-  replay::RecordedFingertip fingertip(settings);
+  replay::RecordedFingertip fingertip(settings.options);
 
   // Every frame.
   double worst_n = 0;

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   replay::DotSource dots(folder, recording.sensor, recording.reference, recording.reference_depth,
                          recording.frames.size());
   const auto settings = replay::fingertip_settings(recording, dots.initial());
-  replay::RecordedFingertip fingertip(settings);
+  replay::RecordedFingertip fingertip(settings.options);
   fingerpad::GripControl<> control({}, 3);  // N
 
   double last_s = 0, worst_ms = 0, raised_n = 0;

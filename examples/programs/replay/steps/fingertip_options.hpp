@@ -4,6 +4,7 @@
 // Converts sensor.json and the free pad to options of pipeline/fingertip.hpp. The library itself
 // reads no files.
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <span>
@@ -15,6 +16,12 @@
 #include "fingerpad/adapt/opencv.hpp"
 #include "fingerpad/pipeline/fingertip_options.hpp"
 #include "replay/dots/grid.hpp"
+
+namespace fingerpad {
+inline namespace v1 {
+class Fingertip;
+}
+}  // namespace fingerpad
 
 namespace replay {
 
@@ -47,22 +54,24 @@ std::string fault_of_pressure(const Recording& recording);
 /// Why a recording has no six-axis forces; empty if it has them.
 std::string lacking_for_wrench(const Recording& recording);
 
-/// A fingertip with these settings, compiled once for all programs.
+/// A fingertip with these options, compiled once for all programs.
 class RecordedFingertip {
  public:
-  explicit RecordedFingertip(const FingertipSettings& settings);
+  explicit RecordedFingertip(const fingerpad::FingertipOptions& options);
   ~RecordedFingertip();
 
-  /// See fingerpad::Fingertip.
-  fingerpad::FingertipResult operator()(const cv::Mat& frame,
-                                        const DotGrid& dots_px,
-                                        double pressure_mpa,
-                                        double time_s,
-                                        std::span<const fingerpad::Mark> side_dots = {});
+  /// See fingerpad::Fingertip. Without dots that need any, (frame) is enough.
+  fingerpad::FingertipResult operator()(
+      const cv::Mat& frame,
+      const DotGrid& dots_px = {},
+      double pressure_mpa = std::numeric_limits<double>::quiet_NaN(),
+      double time_s = std::numeric_limits<double>::quiet_NaN(),
+      std::span<const fingerpad::Mark> side_dots = {});
+  /// The maps of the last frame.
+  const fingerpad::Fingertip& last() const { return *fingertip_; }
 
  private:
-  struct Whole;
-  std::unique_ptr<Whole> whole_;
+  std::unique_ptr<fingerpad::Fingertip> fingertip_;
 };
 
 }  // namespace replay

@@ -19,7 +19,6 @@ namespace {
 
 using fingerpad::FingertipResult;
 
-using fingerpad::Fingertip;
 using fingerpad::FingertipOptions;
 
 template <class View>
@@ -36,9 +35,9 @@ auto copy_of(const View& from) {
 
 cv::Mat_<float> free_depth_of(FingertipOptions options, const cv::Mat& image) {
   options.depth_alone = true;
-  Fingertip fingertip(options);
-  with_colors(image, [&](const auto& red, const auto& green) { (void)fingertip(red, green); });
-  return copy_of(fingertip.depth_mm());
+  RecordedFingertip fingertip(options);
+  (void)fingertip(image);
+  return copy_of(fingertip.last().depth_mm());
 }
 
 double contact_threshold_of(Recording& recording, const FingertipOptions& options) {
@@ -74,14 +73,12 @@ class Step : public FingertipStep {
                             double time_s) override {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
-    const FingertipResult touch = with_colors(image, [&](const auto& red, const auto& green) {
-      return fingertip_(red, green, dots_px, recording_.signals.pressure_mpa(frame), time_s,
-                        side_dots);
-    });
+    const FingertipResult touch =
+        fingertip_(image, dots_px, recording_.signals.pressure_mpa(frame), time_s, side_dots);
     FingertipFrame out;
     out.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-    out.depth_mm = copy_of(fingertip_.depth_mm());
-    out.contact_mask = copy_of(fingertip_.contact_mask());
+    out.depth_mm = copy_of(fingertip_.last().depth_mm());
+    out.contact_mask = copy_of(fingertip_.last().contact_mask());
     if (with_dots_) {
       out.dots = dots_of(dots_px, touch);
     }
@@ -95,18 +92,18 @@ class Step : public FingertipStep {
     FrameDots dots;
     dots.dots_px = dots_px;
     dots.dots_mm.create(dots_px.size());
-    dots.in_contact = copy_of(fingertip_.dots_in_contact());
+    dots.in_contact = copy_of(fingertip_.last().dots_in_contact());
     dots.states.create(dots_px.size());
     if (touch.stick.updated()) {
       dots.slips_mm.create(dots_px.size());
     }
     for (int i = 0; i < dots_px.rows; ++i) {
       for (int j = 0; j < dots_px.cols; ++j) {
-        const auto& p = fingertip_.dots_mm()(i, j);
+        const auto& p = fingertip_.last().dots_mm()(i, j);
         dots.dots_mm(i, j) = {p.x, p.y, p.z};
-        dots.states(i, j) = static_cast<uchar>(fingertip_.dot_states()(i, j));
+        dots.states(i, j) = static_cast<uchar>(fingertip_.last().dot_states()(i, j));
         if (!dots.slips_mm.empty()) {
-          const auto& slip = fingertip_.dot_slips()(i, j);
+          const auto& slip = fingertip_.last().dot_slips()(i, j);
           dots.slips_mm(i, j) = {slip.x, slip.y};
         }
       }
@@ -116,7 +113,7 @@ class Step : public FingertipStep {
 
   const Recording& recording_;
   bool with_dots_, with_wrench_;
-  Fingertip fingertip_;
+  RecordedFingertip fingertip_;
 };
 
 }  // namespace

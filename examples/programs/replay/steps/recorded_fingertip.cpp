@@ -5,12 +5,8 @@
 
 namespace replay {
 
-struct RecordedFingertip::Whole {
-  fingerpad::Fingertip fingertip;
-};
-
-RecordedFingertip::RecordedFingertip(const FingertipSettings& settings)
-    : whole_(new Whole{fingerpad::Fingertip(settings.options)}) {}
+RecordedFingertip::RecordedFingertip(const fingerpad::FingertipOptions& options)
+    : fingertip_(new fingerpad::Fingertip(options)) {}
 RecordedFingertip::~RecordedFingertip() = default;
 
 fingerpad::FingertipResult RecordedFingertip::operator()(
@@ -20,7 +16,7 @@ fingerpad::FingertipResult RecordedFingertip::operator()(
     double time_s,
     std::span<const fingerpad::Mark> side_dots) {
   return with_colors(frame, [&](const auto& red, const auto& green) {
-    return whole_->fingertip(red, green, dots_px, pressure_mpa, time_s, side_dots);
+    return (*fingertip_)(red, green, dots_px, pressure_mpa, time_s, side_dots);
   });
 }
 
