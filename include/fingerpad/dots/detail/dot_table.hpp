@@ -16,7 +16,6 @@
 #include "fingerpad/core/grid.hpp"
 #include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
-#include "fingerpad/math/detail/small_matrices.hpp"
 
 namespace fingerpad {
 inline namespace v1 {
@@ -101,26 +100,33 @@ constexpr Index neighbour_reach = 2;
 template <class ValueAt>
 Place by_neighbours(Index rows, Index cols, Index row, Index col, const ValueAt& value_at) {
   constexpr Index reach = neighbour_reach;
-  ProductSums<double, 5> sums;
+  constexpr double hold = 0.05;  // on the slopes, for neighbours in one line
+  double s = 0, r = 0, c = 0, rr = hold, rc = 0, cc = hold;
+  Place b{0, 0}, br{0, 0}, bc{0, 0};
   int count = 0;
   for (Index i = (std::max)(row - reach, Index{0}); i <= (std::min)(row + reach, rows - 1); ++i) {
     for (Index j = (std::max)(col - reach, Index{0}); j <= (std::min)(col + reach, cols - 1); ++j) {
       const Place value = i == row && j == col ? no_place() : value_at(i, j);
       if (is_finite(value)) {
         const auto down = static_cast<double>(i - row), right = static_cast<double>(j - col);
-        const double root = 1 / std::hypot(down, right);
-        sums.add({root, root * down, root * right, root * value.x, root * value.y});
+        const double weight = 1 / (down * down + right * right);
+        s += weight;
+        r += weight * down;
+        c += weight * right;
+        rr += weight * down * down;
+        rc += weight * down * right;
+        cc += weight * right * right;
+        b += weight * value;
+        br += weight * down * value;
+        bc += weight * right * value;
         ++count;
       }
     }
   }
-  SmallMatrix<double, 3> a = sums.corner<3>();
-  for (const std::size_t slope : {1U, 2U}) {
-    a[slope][slope] += 0.05;  // for neighbours in one line
-  }
-  const NormalEquations<double, 3> plane(a);
-  return count < 3 ? no_place()
-                   : Place{plane.solve(sums.column<3>(3))[0], plane.solve(sums.column<3>(4))[0]};
+  // the first row of the inverse of [s r c; r rr rc; c rc cc], by cofactors
+  const double at_b = rr * cc - rc * rc, at_br = c * rc - r * cc, at_bc = r * rc - c * rr;
+  const double det = s * at_b + r * at_br + c * at_bc;
+  return count < 3 ? no_place() : (at_b * b + at_br * br + at_bc * bc) / det;
 }
 
 /// Distance of each dot to the nearest of its four neighbours; the mean of all where it has none.
