@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE("the scattering of a frame without noise is found",
                    double) {
   using S = TestType;
   Pad pad;
-  pad.scattering_loss = GENERATE(0.0, 0.05, 0.4);
+  pad.scattering_loss = GENERATE(0.0, 0.05, 0.5);
   const auto reference = pad.reference<S>();
   // normal equations of a cubic lose four to five digits, which float still resolves
   CHECK(worst_g(pad, reference) <= (std::is_same_v<S, float> ? 1e-6 : 1e-11));
@@ -154,36 +154,6 @@ TEST_CASE("a lamp that lights unevenly leaves the depth as it is", "[reference]"
       fit_reference<double>(pad.camera, pad.fluid, plain.red, plain.green, free, &light);
   CHECK(known.residual_rms < 1e-9);
   CHECK(known.gain(24, 32) == Approx(1));
-}
-
-TEST_CASE("noise of the free frame is not taken for uneven light, and uneven light not for noise",
-          "[reference]") {
-  const bool is_even = GENERATE(true, false);
-  Pad pad = test::pad_of(240, 320, 0.16);
-  const auto free = pad.free_depths(), pressed = pad.pressed_depths(3.5);
-  double error_mm = 0, count = 0;
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    auto seen = is_even ? pad.frame<double>(free) : under_a_lamp(pad, free);
-    test::Random random(seed);
-    for (auto* plane : {&seen.red, &seen.green}) {
-      for (double& x : plane->cells) {
-        x += x > 0 ? random.normal() : 0;
-      }
-    }
-    DepthEstimator<double> estimator(
-        pad.camera, pad.fluid,
-        fit_reference<double>(pad.camera, pad.fluid, seen.red, seen.green, free), {.window_px = 1});
-    const auto e = test::estimate(
-        estimator, is_even ? pad.frame<double>(pressed) : under_a_lamp(pad, pressed));
-    for (std::size_t k = 0; k < pressed.cells.size(); ++k) {
-      const double error = std::abs(e.depth_mm.cells[k] - pressed.cells[k]);
-      error_mm += is_finite(error) ? error : 0;
-      count += is_finite(error) ? 1 : 0;
-    }
-  }
-  CAPTURE(is_even);
-  CHECK(error_mm / count <=
-        (is_even ? 0.009 : 0.02));  // all terms believed: 0.024, 0.026; none: 0.005, 0.084
 }
 
 TEST_CASE("what the light does not explain is masked for good", "[reference]") {
@@ -1475,5 +1445,5 @@ TEST_CASE("unchanged: reference and depth of noisy frames", "[unchanged]") {
   for (std::size_t k = 0; k < reference.scattering.size(); k += 7) {
     d.all(reference.scattering[k], reference.green[k]);
   }
-  CHECK(d.sum() == Approx(2284743.6078).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == Approx(2284424.805).epsilon(0).margin(1e-3));
 }

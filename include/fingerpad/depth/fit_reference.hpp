@@ -163,32 +163,21 @@ void mark_unexplained(const PadLight<C>& light, std::vector<FreeBlock<C>>& block
   }
 }
 
-/// How much to believe of `terms` terms that take `gain` off the sum of squares, in variances of
-/// the noise. Noise alone gives terms +- sqrt(2 terms); what lies within two sd of that is not
-/// believed.
-inline double believed_share(double gain, double terms) {
-  return (std::max)(0.0, 1 - (terms + 2 * std::sqrt(2 * terms)) / gain);
-}
-
-/// The light by least squares over the blocks. First g of degree 2 with the fluid's kappa; then
-/// kappa over the pad and g of each higher degree, as far as the frame shows more of it than its
-/// noise does: one free frame hardly tells kappa from g, and the noise of terms that are not there
-/// would cost most of the precision. Refuses data that do not determine the light.
+/// The light by least squares over the blocks, each over the slope of W, so that a grey level
+/// counts as the depth that it moves. Refuses data that do not determine it.
 template <scalar C>
-PadLight<C> fit_light(std::vector<FreeBlock<C>>& blocks, const C& scale_mm, const C& kappa) {
+PadLight<C> fit_light(std::vector<FreeBlock<C>>& blocks, const C& scale_mm) {
   constexpr std::size_t all = FreeBlock<C>::terms, kappa_terms = FreeBlock<C>::kappa_terms;
-  // first column of g of degree 2, kappa, g of degree 3, 4, 5, 6
-  constexpr std::array<std::size_t, 6> groups = {0, 6, 6 + kappa_terms, 13, 18, 24};
   PadLight<C> light;
   light.scattering.scale_mm = light.kappa.scale_mm = scale_mm;
   for (int round = 0; round < 3; ++round) {
     std::vector<C> rows;
     for (const FreeBlock<C>& b : blocks) {
+      for (std::size_t k = 0; k < all && b.fits; ++k) {
+        rows.push_back(b.by[k] / b.w_slope);
+      }
       if (b.fits) {
-        rows.insert(rows.end(), b.by.begin(), b.by.end());
-        const auto first = rows.end() - static_cast<std::ptrdiff_t>(all);
-        std::rotate(first, first + kappa_terms, first + groups[2]);
-        rows.push_back(b.membrane - kappa * b.by[0]);
+        rows.push_back(b.membrane / b.w_slope);
       }
     }
     const std::size_t count = rows.size() / (all + 1);
@@ -199,32 +188,9 @@ PadLight<C> fit_light(std::vector<FreeBlock<C>>& blocks, const C& scale_mm, cons
     }
     expects(determined, "fit_reference", "blocks of pixels with a known depth", count,
             "enough, and far enough apart, to determine the light over the pad");
-    const auto squares = [&](std::size_t first, std::size_t last) {
-      double sum = 0;
-      for (std::size_t k = first; k < last; ++k) {
-        sum += static_cast<double>(value(square(triangle(k, all))));
-      }
-      return sum;
-    };
-    const double variance = squares(all, all + 1) / static_cast<double>(count - all);
-    std::array<C, all> x = zeros<C, all>();
-    for (std::size_t group = groups.size(), last = all; group-- > 0; last = groups[group]) {
-      const std::size_t first = groups[group];
-      const C share = C(group == 0 ? 1.0
-                                   : believed_share(squares(first, last) / variance,
-                                                    static_cast<double>(last - first)));
-      for (std::size_t i = last; i-- > first;) {
-        x[i] = share * triangle(i, all);
-        for (std::size_t k = i + 1; k < all; ++k) {
-          x[i] = x[i] - triangle(i, k) * x[k];
-        }
-        x[i] = x[i] / triangle(i, i);
-      }
-    }
-    std::copy_n(x.begin() + groups[1], kappa_terms, light.kappa.coefficient.begin());
-    light.kappa.coefficient[0] = light.kappa.coefficient[0] + kappa;
-    const auto higher = std::copy_n(x.begin(), groups[1], light.scattering.coefficient.begin());
-    std::copy(x.begin() + groups[2], x.end(), higher);
+    const std::vector<C> x = triangle.solve(all, all);
+    std::copy_n(x.begin(), kappa_terms, light.kappa.coefficient.begin());
+    std::copy(x.begin() + kappa_terms, x.end(), light.scattering.coefficient.begin());
     mark_unexplained(light, blocks);
   }
   return light;
@@ -279,12 +245,11 @@ double expects_free_pad(const Camera<C>& camera, double max_depth_mm, const Dept
   return pixels;
 }
 
-/// Refuses a light that no pad has. It holds one fluid; lamp and lens may fall to `least_share`
-/// toward the rim (a shape in plan in place of one along the rays makes them seem to fall to 0.55),
-/// but are hardly darker on the axis than elsewhere, except where the membrane is pressed there.
-/// The limit of the residual, 5 grey levels, is what a poor camera leaves.
+/// Refuses a light that no pad has. It holds one fluid; lamp and lens may fall to a third toward
+/// the rim, but are hardly darker on the axis than elsewhere, except where the membrane is pressed
+/// there. The limit of the residual, 5 grey levels, is what a poor camera leaves.
 template <scalar S>
-void expects_light(const DepthReference<S>& reference, const S& on_axis, double least_share) {
+void expects_light(const DepthReference<S>& reference, const S& on_axis) {
   constexpr const char* owner = "fit_reference";
   constexpr double infinite = (std::numeric_limits<double>::infinity)();
   double min_g = infinite, max_g = -infinite, min_gain = infinite;
@@ -301,10 +266,8 @@ void expects_light(const DepthReference<S>& reference, const S& on_axis, double 
           "> 0: are red and green exchanged, is depth_mm the height of the free pad, and are the "
           "constants of absorption those of this fluid?");
   expects(
-      min_g >= least_share * max_g, owner, "least scattering, as a share of the largest",
-      min_g / max_g,
-      ">= 0.6, or 0.3 of a known light: is the frame one of the free pad, and depth_mm its height "
-      "along each pixel's ray?");
+      min_g >= 0.3 * max_g, owner, "least scattering, as a share of the largest", min_g / max_g,
+      ">= 0.3: is the frame one of the free pad, and depth_mm its height along each pixel's ray?");
   expects(axis_share >= 0.75, owner, "scattering on the axis, as a share of the largest",
           axis_share, ">= 0.75: is the reference of the free pad?");
   expects(residual <= 5, owner, "residual in grey levels", residual,
@@ -359,8 +322,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   });
   const Index width = detail::block_width(pad_pixels);
   auto blocks = detail::free_blocks(camera, fluid, reds, greens, depths, width, scale_mm);
-  const PadLight<C> light =
-      known != nullptr ? *known : detail::fit_light(blocks, scale_mm, fluid.kappa);
+  const PadLight<C> light = known != nullptr ? *known : detail::fit_light(blocks, scale_mm);
   if (known != nullptr) {
     expects(!blocks.empty(), "fit_reference", "blocks of pixels with a known depth", 0, ">= 1");
     detail::mark_unexplained(light, blocks);
@@ -393,8 +355,7 @@ DepthReference<S> fit_reference(const Camera<C>& camera,
   const C mean_sq = left_sq * C(static_cast<double>(width * width)) /
                     C(static_cast<double>((std::max)(reference.pixels_used, Index(1))));
   reference.residual_rms = S(value(mean_sq) > 0 ? sqrt(mean_sq) : C(0));
-  detail::expects_light(reference, S(light.scattering.at({C(0), C(0)})),
-                        known != nullptr ? 0.3 : 0.6);
+  detail::expects_light(reference, S(light.scattering.at({C(0), C(0)})));
   for (const detail::FreeBlock<C>& b : blocks) {
     detail::each_pixel(b.fits ? 0 : width, width, [&](Index i, Index j) {
       reference.scattering[static_cast<std::size_t>((b.row + i) * reference.cols + b.col + j)] =
