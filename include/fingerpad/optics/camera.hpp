@@ -90,12 +90,6 @@ S reach_mm(const Camera<S>& camera, const S& t_sq, const S& depth_mm) {
          camera.plate_thickness_mm * tangent_ratio(t_sq, camera.plate_index) +
          depth_mm * tangent_ratio(t_sq, camera.refractive_index);
 }
-/// The same near the axis, where t = 0.
-template <scalar S>
-S paraxial_reach_mm(const Camera<S>& camera, const S& depth_mm) {
-  return camera.plate_distance_mm - camera.plate_thickness_mm +
-         camera.plate_thickness_mm / camera.plate_index + depth_mm / camera.refractive_index;
-}
 }  // namespace detail
 
 /// The ray of one pixel, as the depth model needs it, and the pencil of light that comes back along
@@ -144,7 +138,8 @@ Ray<S> ray_at_tangent(const Camera<S>& camera, const S& t) {
 /// Tangent per pixel of distance from the center pixel, along a row, near the axis.
 template <scalar S>
 S tangent_per_px(const Camera<S>& camera) {
-  return camera.pitch_mm / detail::paraxial_reach_mm(camera, S(0));
+  return camera.pitch_mm / (camera.plate_distance_mm - camera.plate_thickness_mm +
+                            camera.plate_thickness_mm / camera.plate_index);
 }
 
 /// c: at depth l, pixels near the axis see points that are pitch_mm (1 + c l) apart along x.
@@ -236,7 +231,7 @@ Point2<S> pixel_of(const Camera<S>& camera, const Point3<S>& point) {
   const S in_air = camera.plate_distance_mm - camera.plate_thickness_mm;
   const S rho_sq = point.x * point.x + point.y * point.y;
   const S rho = value(rho_sq) == 0 ? S(0) : sqrt(rho_sq);
-  S reach = detail::paraxial_reach_mm(camera, point.z);
+  S reach = camera.pitch_mm / tangent_per_px(camera) + point.z / n;  // near the axis
   S t = rho / reach;
   for (int step = 0; step <= 8; ++step) {
     const S t_sq = t * t;
