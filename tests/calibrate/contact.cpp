@@ -303,5 +303,5 @@ TEST_CASE("unchanged: threshold and smallest dent of noisy free frames", "[uncha
   test::Digest d;
   d.all(fit.threshold_per_mm, fit.median_per_mm, fit.median_error_per_mm, fit.region_per_mm,
         fit.noise_per_mm, limit.free_frames, limit.false_frames, limit.depth_mm, limit.radius_mm);
-  CHECK(d.sum() == Approx(184.478).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(184.478));
 }

@@ -530,5 +530,5 @@ TEST_CASE("unchanged: noise of an array that is touched for a while", "[unchange
   }
   d.all(fit.typical, fit.typical_error, fit.largest_factor, fit.centroid_deviation_mm, fit.shared,
         fit.windows, fit.ok());
-  CHECK(d.sum() == Approx(1095.968).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(1095.968));
 }

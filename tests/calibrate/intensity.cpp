@@ -167,5 +167,5 @@ TEST_CASE("unchanged: the law of noisy presses", "[unchanged]") {
     d.all(found.law.linear_mm, found.variance_mm2, found.mean_error_mm, found.max_depth_mm,
           found.ok());
   }
-  CHECK(d.sum() == Approx(276.052).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(276.052));
 }

@@ -150,5 +150,5 @@ TEST_CASE("unchanged: neighbouring light of noisy depths", "[unchanged]") {
   for (const double rms : fit.rms_of_radius_mm) {
     d.add(rms);
   }
-  CHECK(d.sum() == Approx(387.837).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(387.837));
 }

@@ -128,5 +128,5 @@ TEST_CASE("unchanged: the membrane of noisy apexes", "[unchanged]") {
     d.all(fit.modulus_n_per_mm, fit.modulus_sd_n_per_mm, fit.height_mm, fit.height_sd_mm,
           fit.mooney_share, fit.mooney_sd, fit.residual_mm);
   }
-  CHECK(d.sum() == Approx(313.230).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(313.230));
 }

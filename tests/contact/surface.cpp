@@ -571,5 +571,5 @@ TEST_CASE("unchanged: a ball seen with noise", "[unchanged]") {
     d.all(r.pixels, r.curvature_1_per_mm, r.curvature_2_per_mm, r.curvature_1_sd_per_mm,
           r.curvature_2_sd_per_mm, r.point_mm, r.normal, r.rms_mm);
   }
-  CHECK(d.sum() == Approx(323.681).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(323.681));
 }

@@ -160,5 +160,5 @@ TEST_CASE("unchanged: light of a noisy free frame with dirt", "[unchanged]") {
     REQUIRE(found.has_value());
     d.all(found->gains.green, found->gains.red, found->height, found->green_sd, found->balance_sd);
   }
-  CHECK(d.sum() == Approx(885.350).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(885.350));
 }

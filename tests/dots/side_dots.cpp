@@ -382,5 +382,5 @@ TEST_CASE("unchanged: side dots of a noisy picture", "[unchanged]") {
       d.all(dots.px()[k], dots.sd_px()[k]);
     }
   }
-  CHECK(d.sum() == Approx(50428.229).epsilon(0).margin(1e-3));
+  CHECK(d.sum() == test::same(50428.229));
 }

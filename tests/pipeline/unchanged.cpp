@@ -38,13 +38,10 @@ using namespace fingerpad;
 using test::Digest;
 using test::Image;
 using test::Random;
+using test::same;
 using test::SpatialScene;
 
 namespace {
-
-Approx same(double sum) {
-  return Approx(sum).epsilon(0).margin(1e-3);
-}
 
 /// Dots of a step as a camera finds them: with noise, and some are lost.
 test::DotsMm seen(const test::SpatialStep& step, double noise_mm, Random& random) {
