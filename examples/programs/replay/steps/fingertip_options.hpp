@@ -60,7 +60,7 @@ class RecordedFingertip {
   explicit RecordedFingertip(const fingerpad::FingertipOptions& options);
   ~RecordedFingertip();
 
-  /// See fingerpad::Fingertip. Without dots that need any, (frame) is enough.
+  /// See fingerpad::Fingertip. A frame alone is enough where no stage takes dots.
   fingerpad::FingertipResult operator()(
       const cv::Mat& frame,
       const DotGrid& dots_px = {},
