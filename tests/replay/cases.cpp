@@ -310,6 +310,18 @@ TEST_CASE("cases: free frames that show a contact, all or some") {
   CHECK(recording.slips() == -1);
 }
 
+TEST_CASE("cases: a recording that begins with a contact, and has no frames of the free pad") {
+  Frames frames(gel(Kind::hold).end() - 4, gel(Kind::hold).end());
+  frames.insert(frames.end(), gel(Kind::slip).begin(), gel(Kind::slip).end());
+  Recording recording;
+  recording.write("frames", frames);
+  CHECK(is_in_time(recording.slips() - 4));
+  const auto rows = recording.table("frames.csv");
+  CHECK(std::stod(rows[1].at("contact_area_px")) ==
+        Approx(std::stod(rows[17].at("contact_area_px"))).epsilon(0.05));
+  CHECK(rows[5].at("contact_area_px") == "0");
+}
+
 TEST_CASE("cases: frames that are not like the free pad say so, and are no slip") {
   const Change other_lamp = lit([](int, double x, double) { return 0.4 + 1.2 * x / width; });
   Recording recording;
@@ -485,6 +497,90 @@ TEST_CASE("cases: a full scale that nobody has stated is told") {
   }
 }
 
+TEST_CASE("cases: readings that were lost and written as a number are told and left out") {
+  const std::string lost = GENERATE(as<std::string>(), "0", "-1", "-999", "0, all at once");
+  INFO(lost);
+  cv::RNG random(7);
+  const Array array([&](int k, Array::Cells& cells) {
+    for (std::size_t c = 2; c < cells.size(); ++c) {
+      const bool is_lost = lost.size() > 4 ? k == 100 : random.uniform(0.0, 1.0) < 0.02;
+      cells[c] = is_lost ? lost.substr(0, lost.find(',')) : cells[c];
+    }
+  });
+  CHECK(has(array.checked(), "fall to " + lost.substr(0, lost.find(',')) + " for a moment"));
+  std::string alarm;
+  for (const test::Line& line : array.table("frames.csv")) {
+    alarm = alarm.empty() && line.at("preslip") == "1" ? line.at("time_s") : alarm;
+  }
+  CHECK(std::stod(alarm) == Approx(6.9).margin(0.4));  // the object creeps from 6.5 s on
+}
+
+TEST_CASE("cases: an array of which half of the taxels are dead from the start is told") {
+  const int kind = GENERATE(0, 1, 2);
+  const Array array([kind](int, Array::Cells& cells) {
+    for (int taxel = 0; taxel < 64; ++taxel) {
+      const int row = taxel / 4, col = taxel % 4;
+      if ((kind == 0 ? row : kind == 1 ? col : row + col) % 2 == 1) {
+        cells[static_cast<std::size_t>(2 + taxel)] = "0";
+      }
+    }
+  });
+  INFO(kind);
+  CHECK(has(array.checked(), "do not change while those beside them do"));
+  CHECK(array.last("finger0_taxels_left_out", 50) >= 8);
+}
+
+TEST_CASE("cases: taxels of a side that never change are noted, untouched or dead") {
+  const Array array(
+      [](int, Array::Cells& cells) { std::fill(cells.begin() + 2, cells.begin() + 18, "0"); });
+  CHECK(array.checked() == "");
+  bool noted = false;
+  for (const replay::Finding& finding : replay::check_recording(array.folder())) {
+    noted = noted || has(finding.what, "16 of 64 taxels never change");
+  }
+  CHECK(noted);
+}
+
+TEST_CASE("cases: an array that reads less where it is pressed more is refused") {
+  const Array array([](int, Array::Cells& cells) {
+    for (std::size_t c = 2; c < cells.size(); ++c) {
+      cells[c] = number(4095 - std::stod(cells[c]));
+    }
+  });
+  CHECK(has(array.refusal(), "the readings fall where they should rise"));
+  CHECK(has(array.checked(), array.refusal()));
+}
+
+TEST_CASE("cases: an array that shakes while its noise is measured") {
+  const Array array([](int k, Array::Cells& cells) {
+    for (std::size_t c = 2; c < cells.size(); ++c) {
+      cells[c] = number(std::stod(cells[c]) + 40 * std::sin(2.2 * k));
+    }
+  });
+  CHECK(has(array.refusal(), "record while nothing shakes"));
+  CHECK(has(array.checked(), array.refusal()));
+  test::replace_in(array.folder() / "sensor.json", "\"quiet_until_s\": 3,", "");
+  CHECK(has(array.checked(), "shakes in the first samples"));
+}
+
+TEST_CASE("cases: tables as spreadsheets and NumPy write them") {
+  const Array quoted([](int, Array::Cells& cells) {
+    for (std::string& cell : cells) {
+      cell = '"' + cell + '"';
+    }
+  });
+  const Array numpy([](int, Array::Cells& cells) {
+    for (std::string& cell : cells) {
+      cell = number(std::stod(cell), "%.18e");
+    }
+  });
+  test::replace_in(numpy.folder() / "taxels.csv", "frame,", "# by hand\n# frame,");
+  for (const Array* array : {&quoted, &numpy}) {
+    CHECK(array->checked() == "");
+    CHECK(array->last("finger0_sum") == plain_array().last("finger0_sum"));
+  }
+}
+
 TEST_CASE("cases: a quiet part in which nothing changes is refused, and named by --check") {
   const Array array([](int k, Array::Cells& cells) {
     std::fill(cells.begin() + 2, k < 100 ? cells.end() : cells.begin() + 2, "0");
@@ -529,6 +625,48 @@ TEST_CASE("cases: a gauge that was set to zero with the pad inflated is told") {
         << 0.016309 - zero_mpa << "\n";
     CHECK(has(press.checked(), "but the free pad needs about 0.0160 MPa"));
   }
+}
+
+TEST_CASE("cases: pressures in another unit are told with the unit") {
+  struct Unit {
+    const char *name, *remedy;
+    double per_mpa, zero_mpa;
+  };
+  for (const auto& [name, remedy, per_mpa, zero_mpa] :
+       {Unit{"psi", "psi, divide by 145.04", 145.04, 0},
+        Unit{"mmHg", "mmHg, divide by 7500.6", 7500.6, 0},
+        Unit{"mbar", "mbar, divide by 10000", 1e4, 0},
+        Unit{"absolute kPa", "kPa, divide by 1000 and subtract 0.1013", 1e3, 0.1013},
+        Unit{"twice", "", 2, 0}}) {
+    INFO(name);
+    const Press press;
+    std::ofstream(press.folder() / "signals.csv")
+        << "frame,time_s,pressure_mpa\n0,0," << per_mpa * (0.016 + zero_mpa) << "\n1,0.1,"
+        << per_mpa * (0.016309 + zero_mpa) << "\n";
+    std::string told;
+    for (const replay::Finding& finding : replay::check_recording(press.folder())) {
+      told += finding.is_wrong ? finding.what + ": " + finding.remedy : "";
+    }
+    CHECK(has(told, *remedy != '\0' ? remedy : "but the free pad needs only 0.0160 MPa"));
+  }
+}
+
+TEST_CASE("cases: a reference depth that replay refuses, and another light, are told") {
+  const Press other_height, other_light;
+  const std::string file = (other_height.folder() / "reference_depth.tiff").string();
+  cv::imwrite(file, cv::Mat(1.1 * cv::imread(file, cv::IMREAD_UNCHANGED)));
+  CHECK(has(other_height.refusal(), "must be within 5 %"));
+  CHECK(has(other_height.checked(), other_height.refusal()));
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(other_light.folder() / "frames")) {  // darker toward the rim by 3 %
+    const cv::Mat picture = cv::imread(entry.path().string());
+    const double half = picture.rows / 2.0;
+    cv::imwrite(entry.path().string(), lit([&](int, double x, double y) {
+                  const double u = x / half - 1, v = y / half - 1;
+                  return 1 - 0.03 * (u * u + v * v);
+                })(picture, 0));
+  }
+  CHECK(has(other_light.checked(), "its light is not that of the reference"));
 }
 
 TEST_CASE("cases: saturated frames give no confident depth") {

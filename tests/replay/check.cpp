@@ -212,7 +212,7 @@ const std::vector<Mistake> mistakes = {
     {"pressure in kPa", [](const Copy& c) { c.scale("signals.csv", 2, 1e3); },
      "If the unit is kPa, divide by 1000"},
     {"pressure in Pa", [](const Copy& c) { c.scale("signals.csv", 2, 1e6); },
-     "If the unit is Pa, divide by 1,000,000"},
+     "If the unit is Pa, divide by 1000000"},
     {"absolute pressure", [](const Copy& c) { c.scale("signals.csv", 2, 1, 0.1013); },
      "If the pressure is absolute"},
     {"pressure of a gauge that is turned", [](const Copy& c) { c.scale("signals.csv", 2, -1); },

@@ -12,13 +12,13 @@
 namespace replay {
 namespace {
 
-/// Blanks and a carriage return are dropped.
+/// Blanks, quotes and a carriage return are dropped.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
   for (const char c : line) {
     if (c == ',') {
       cells.emplace_back();
-    } else if (c != ' ' && c != '\t' && c != '\r') {
+    } else if (c != ' ' && c != '\t' && c != '\r' && c != '"') {
       cells.back() += c;
     }
   }
@@ -51,6 +51,14 @@ Table::Table(const std::filesystem::path& file, Lines lines)
   }
   if (text.rfind("\xEF\xBB\xBF", 0) == 0) {  // byte order mark, as spreadsheets write it
     text.erase(0, 3);
+  }
+  while (text.starts_with('#')) {  // a comment, or the header as NumPy writes it
+    text.erase(0, 1);
+    if (text.find(',') == std::string::npos) {
+      ++line_;
+      text.clear();
+      std::getline(stream_, text);
+    }
   }
   if (const std::string why = wrong_separator(text); !why.empty()) {
     refuse(why);

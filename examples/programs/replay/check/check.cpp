@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "replay/check/check.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
 #include "common/failure.hpp"
+#include "replay/chain.hpp"
 #include "replay/check/parts.hpp"
 #include "replay/gel/free_pad.hpp"
 #include "replay/steps/fingertip_options.hpp"
@@ -42,6 +44,29 @@ void note_missing(const Recording& recording, Findings& findings) {
   }
 }
 
+/// What replay refuses when nothing else has been found, and what it doubts in the first frame.
+void check_first_frame(const std::filesystem::path& folder,
+                       Recording& recording,
+                       Findings& findings) {
+  Options options;
+  options.recording = folder;
+  Chain chain(recording, options);
+  DamagedFrames damaged;
+  recording.frames.seek(0);
+  const cv::Mat first = next_whole_frame(recording.frames, recording.reference.size(), damaged);
+  const auto is_wrong = [](const Finding& finding) { return finding.is_wrong; };
+  if (!first.empty() && std::none_of(findings.begin(), findings.end(), is_wrong)) {
+    const auto touch = chain(0, first).touch;
+    if (touch.depth.ok() && touch.light_in_doubt()) {
+      findings.push_back(
+          {"frames, first frame",
+           "its light is not that of the reference, by which depth errs by " +
+               short_number(touch.depth_light_sd_mm) + " mm",
+           "Record the reference again in this light, or find what has changed it."});
+    }
+  }
+}
+
 void check_camera_recording(const std::filesystem::path& folder,
                             const std::filesystem::path& sensor,
                             Findings& findings) {
@@ -67,6 +92,9 @@ void check_camera_recording(const std::filesystem::path& folder,
   }
   check_gauge(folder, recording, findings);
   note_missing(recording, findings);
+  if (!recording.sensor.dots_only) {
+    check_first_frame(folder, recording, findings);
+  }
 }
 
 }  // namespace

@@ -104,8 +104,15 @@ void check_foam(const FoamRecording& recording, Findings& findings) {
                             " readings are missing, and are left out",
                         "Check the cable, and whether the table was written completely."});
   }
+  bool shakes = false;
   for (int finger = 0; finger < recording.fingers(); ++finger) {
-    (void)noise_of(recording, finger);  // throws Failure, as replay does
+    shakes = noise_of(recording, finger).shakes || shakes;  // throws Failure, as replay does
+  }
+  if (shakes) {
+    findings.push_back({"taxels.csv",
+                        "the array shakes in the first samples, where its noise is measured",
+                        "Set foam.quiet_until_s in sensor.json to the end of a part in which "
+                        "nothing shakes, or foam.noise."});
   }
 }
 

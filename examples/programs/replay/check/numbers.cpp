@@ -3,11 +3,35 @@
 #include <cmath>
 #include <set>
 
+#include "fingerpad/core/check.hpp"
 #include "replay/check/parts.hpp"
 #include "replay/steps/fingertip_options.hpp"
 
 namespace replay {
 namespace {
+
+/// What to do with pressures in another unit than MPa, by what the free pad needs: each unit in
+/// which a gauge, relative or absolute, would give the least of them. "" if none would.
+std::string remedy_of_unit(const Recording& recording, double least) {
+  constexpr double air_mpa = 0.1013, alike = 0.1;
+  const auto needed_mpa = free_pressure_mpa(recording);
+  std::string all;
+  for (const double absolute : {0.0, air_mpa}) {
+    for (const auto& [unit, per_mpa] : {std::pair("bar", 10.0),
+                                        {"psi", 145.04},
+                                        {"kPa", 1e3},
+                                        {"mmHg", 7500.6},
+                                        {"mbar", 1e4},
+                                        {"Pa", 1e6}}) {
+      if (needed_mpa && std::abs(least / per_mpa / (*needed_mpa + absolute) - 1) < alike) {
+        all += std::string(all.empty() ? "If the unit is " : "; if it is ") + unit +
+               ", divide by " + fingerpad::detail::print("%.7g", per_mpa) +
+               (absolute > 0 ? " and subtract 0.1013" : "");
+      }
+    }
+  }
+  return all.empty() ? "" : all + ".";
+}
 
 void check_pressure(const Recording& recording, Findings& findings) {
   const std::string place = "signals.csv, pressure_mpa";
@@ -22,8 +46,11 @@ void check_pressure(const Recording& recording, Findings& findings) {
   constexpr double air_mpa = 0.085;  // air pressure on a mountain
   const double usual = median_of(values);
   const double least = *std::min_element(values.begin(), values.end());
+  const std::size_t before = findings.size();
   const std::string around = "the median is " + short_number(usual) + " MPa";
-  if (usual > max_plausible_mpa) {
+  if (const std::string remedy = remedy_of_unit(recording, least); !remedy.empty()) {
+    findings.push_back({place, around, remedy});
+  } else if (usual > max_plausible_mpa) {
     findings.push_back({place, around + ", more than a soft pad withstands",
                         usual > 1000 ? "If the unit is Pa, divide by 1,000,000."
                                      : "If the unit is kPa, divide by 1000."});
@@ -39,10 +66,12 @@ void check_pressure(const Recording& recording, Findings& findings) {
     findings.push_back({place, around + ", almost zero",
                         "Check that the gauge is connected and that the unit is not GPa or bar."});
   }
-  if (const std::string fault = fault_of_pressure(recording); !fault.empty() && least >= 0) {
-    findings.push_back({place, fault,
-                        "Tare the gauge with the pad open: it was set to zero with the pad "
-                        "inflated, or the pad has lost fluid since the reference."});
+  if (const std::string fault = fault_of_pressure(recording);
+      !fault.empty() && least >= 0 && findings.size() == before) {
+    findings.push_back(
+        {place, fault,
+         "Tare the gauge with the pad open: it was set to zero with the pad "
+         "inflated, or the pad has lost fluid since the reference. Check its unit."});
   }
   if (values.size() >= 10 && std::set<double>(values.begin(), values.end()).size() == 1) {
     findings.push_back(
@@ -159,7 +188,7 @@ void check_clock(const std::string& place,
     findings.push_back({place, "the median interval is " + short_number(usual) + " s",
                         "Check that the unit is s: if it is min, multiply by 60."});
   }
-  if (longest_s > 5 * usual && steps.size() > 5) {
+  if (usual > 0 && longest_s > 5 * usual && steps.size() > 5) {
     findings.push_back({place,
                         "a gap of " + short_number(longest_s) + " s before " + what + " " +
                             std::to_string(longest) + "; the median interval is " +

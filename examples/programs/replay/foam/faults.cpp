@@ -118,6 +118,46 @@ void leave_out_spikes(FoamRecording& recording) {
        "Check for loose contacts and for noise on the cable.");
 }
 
+/// Leaves out readings that were lost and written as a number: the least of all, 0 or below, that a
+/// taxel reads for a moment in which nothing can let go and press again as before.
+void leave_out_lost(FoamRecording& recording) {
+  constexpr double moment_s = 0.1;
+  TaxelTable& table = recording.table;
+  Values& all = table.readings;
+  const std::size_t n = table.taxels();
+  const double least = std::accumulate(all.begin(), all.end(), 0.0,
+                                       [](double a, double b) { return std::fmin(a, b); });
+  const double longest = std::fmax(1, moment_s / recording.sensor.taxels.sample_period_s);
+  Values steps;
+  for (std::size_t k = n; k < all.size(); ++k) {
+    if (all[k] > least && all[k - n] > least && all[k] != all[k - n]) {
+      steps.push_back(std::abs(all[k] - all[k - n]));
+    }
+  }
+  const double clear = steps.empty() ? largest_reading(table) : 8 * median_of(steps);
+  std::vector<int> counted(n, 0);
+  for (std::size_t taxel = 0; taxel < n; ++taxel) {
+    for (std::size_t k = taxel + n, before = taxel; k < all.size(); k += n) {
+      if (!(all[k] > least)) {
+        continue;
+      }
+      const double fall = std::fmin(all[k], all[before]) - least;
+      const bool is_full = all[k] >= recording.sensor.taxels.saturated_at;
+      const auto lost = static_cast<double>((k - before) / n - 1);
+      if (lost > 0 && lost <= longest && all[before] > least && fall > clear && !is_full &&
+          std::abs(all[k] - all[before]) < fall / 2) {
+        for (std::size_t at = before + n; at < k; at += n) {
+          counted[taxel] += all[at] == least ? 1 : 0;
+          all[at] = std::numeric_limits<double>::quiet_NaN();
+        }
+      }
+      before = k;
+    }
+  }
+  tell(recording, counted, "fall to " + number(least) + " for a moment, and are left out",
+       "Leave the cells of lost readings empty, and check the cable.");
+}
+
 /// Means of each taxel over samples; 0 for a taxel without a reading.
 Values means_of(const TaxelTable& table, const std::vector<std::size_t>& samples) {
   Values sums(table.taxels(), 0), counts(table.taxels(), 0);
@@ -145,30 +185,38 @@ double range_of(const TaxelTable& table, std::size_t taxel, std::size_t from, st
   return most > least ? most - least : 0;
 }
 
-/// Whether all taxels beside one are pressed or let go in these samples, so that it should
-/// change, too.
-bool should_change(
-    const TaxelTable& table, std::size_t taxel, std::size_t from, std::size_t to, double pressed) {
+/// Whether taxels beside one are pressed or let go in these samples, so that it should change, too:
+/// all of them, or those on two opposite sides.
+bool should_change(const TaxelTable& table,
+                   std::size_t taxel,
+                   std::size_t from,
+                   std::size_t to,
+                   double pressed,
+                   bool opposite_sides) {
   const int row = static_cast<int>(taxel) / table.cols, col = static_cast<int>(taxel) % table.cols;
-  bool all = true;
-  for (const auto& [i, j] :
-       {std::pair(row - 1, col), {row + 1, col}, {row, col - 1}, {row, col + 1}}) {
-    if (i >= 0 && j >= 0 && i < table.rows && j < table.cols) {
-      const auto beside = static_cast<std::size_t>(i * table.cols + j);
-      all = all && range_of(table, beside, from, to) > pressed;
-    }
-  }
-  return all;
+  const auto changes = [&](int i, int j) {
+    const bool is_in = i >= 0 && j >= 0 && i < table.rows && j < table.cols;
+    const auto beside = static_cast<std::size_t>(i * table.cols + j);
+    return is_in ? range_of(table, beside, from, to) > pressed : !opposite_sides;
+  };
+  const bool along_col = changes(row - 1, col) && changes(row + 1, col);
+  const bool along_row = changes(row, col - 1) && changes(row, col + 1);
+  return opposite_sides ? along_col || along_row : along_col && along_row;
 }
 
-/// Leaves out the longest run of equal readings of a taxel, if it should have changed in it.
+/// Leaves out the longest run of equal readings of a taxel, if it should have changed in it. Of one
+/// that never changes this is sure if many between two that are pressed do not, as where every
+/// second row is dead; a single one may lie at the edge of a contact.
 void leave_out_stuck(FoamRecording& recording) {
   constexpr std::size_t shortest = 60;  // samples, in which a taxel that is held still may rest
   TaxelTable& table = recording.table;
   const std::size_t n = table.taxels(), samples = table.frames.size();
   const double pressed = 0.05 * largest_reading(table);
   std::vector<int> counted(n, 0);
+  std::vector<std::size_t> between;  // two that are pressed
+  int live = 0, still = 0;
   for (std::size_t taxel = 0; taxel < n; ++taxel) {
+    live += range_of(table, taxel, 0, samples) > pressed ? 1 : 0;
     std::size_t from = 0, to = 0;
     for (std::size_t since = 0, k = 1; k <= samples; ++k) {
       const double before = table.readings[(k - 1) * n + taxel];
@@ -182,15 +230,33 @@ void leave_out_stuck(FoamRecording& recording) {
     }
     if (to > from && (to - from >= shortest || to - from == samples) &&
         table.readings[from * n + taxel] < recording.sensor.taxels.saturated_at &&
-        should_change(table, taxel, from, to, pressed)) {
+        should_change(table, taxel, from, to, pressed, false)) {
       counted[taxel] = static_cast<int>(to - from);
+    } else if (to - from == samples && should_change(table, taxel, from, to, pressed, true)) {
+      between.push_back(taxel);
     }
+    still += to - from == samples && counted[taxel] == 0 ? 1 : 0;
     for (std::size_t k = from; k < to && counted[taxel] > 0; ++k) {
       table.readings[k * n + taxel] = std::numeric_limits<double>::quiet_NaN();
     }
   }
+  if (4 * static_cast<int>(between.size()) > live) {
+    still -= static_cast<int>(between.size());
+    for (const std::size_t taxel : between) {
+      counted[taxel] = static_cast<int>(samples);
+      for (std::size_t at = taxel; at < table.readings.size(); at += n) {
+        table.readings[at] = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
   tell(recording, counted, "do not change while those beside them do, and are left out",
        "Check whether they are dead, saturated or disconnected, or leave out their fingers.");
+  if (still > 0 && live > 0) {
+    recording.told.push_back({"taxels.csv",
+                              std::to_string(still) + " of " + std::to_string(n) +
+                                  " taxels never change: nothing touches them, or they are dead",
+                              "Press on each of them once to know.", false});
+  }
 }
 
 /// The line y = offset + slope x.
@@ -380,6 +446,14 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
   const double most = largest_reading(table);
   const double below = *std::min_element(low.begin(), low.end());
   const Line started = line_through(rise, first), held = line_through(change, high);
+  const Line least_read = line_through(change, low);
+  if (n >= 8 && least_read.correlation < -0.98 && least_read.slope < -0.8) {
+    fail(folder / "taxels.csv",
+         "the readings fall where they should rise: all taxels read about " +
+             number(least_read.offset) +
+             " at most, and the more they change the less they read; write that number less each "
+             "reading instead");
+  }
   if (sum_of(rise) > 10 * least && sum_of(first) - sum_of(low) < least + 0.02 * sum_of(rise) &&
       std::abs(started.correlation) < 0.5) {
     const auto [lowest, highest] = std::minmax_element(first.begin(), first.end());
@@ -407,6 +481,7 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
 
 void repair_readings(const std::filesystem::path& folder, FoamRecording& recording) {
   find_full_scale(recording);
+  leave_out_lost(recording);
   leave_out_spikes(recording);
   leave_out_stuck(recording);
   leave_out_drifting(recording);

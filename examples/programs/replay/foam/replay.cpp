@@ -90,7 +90,7 @@ void print_summary(const FoamRecording& recording,
     std::printf("missing      %lld readings in the whole recording\n", recording.table.missing);
   }
   for (const Finding& finding : recording.told) {
-    std::printf("%-12s %s: %s\n", finding.is_wrong ? "left out" : "zero", finding.place.c_str(),
+    std::printf("%-12s %s: %s\n", finding.is_wrong ? "left out" : "note", finding.place.c_str(),
                 finding.what.c_str());
   }
   const auto not_taken = count([](const FoamRow& row) { return !row.was_taken(); });

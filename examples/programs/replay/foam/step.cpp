@@ -101,6 +101,8 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
     return sensor.quiet_until_s ? !(time_s > recording.seconds_in(*sensor.quiet_until_s))
                                 : sample < first_windows;
   };
+  bool shakes = false;
+  std::string why;
   try {
     fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(), sensor.taxels);
     for (int sample = 0; sample < recording.table.samples() && is_quiet(sample); ++sample) {
@@ -112,16 +114,27 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
             ? format("measured until %.4g s", *sensor.quiet_until_s)
             : format("measured in the first %.0f samples", static_cast<double>(first_windows)) +
                   ", which are assumed to be quiet";
-    return {calibration.fit().deviations, until};
-  } catch (const fingerpad::parameter_error& error) {  // the part is too short or has no noise
-    if (sensor.quiet_until_s) {
-      fail("sensor.json",
-           "foam.quiet_until_s = " + format("%.4g", *sensor.quiet_until_s) + ": " + error.what());
+    const auto fit = calibration.fit();
+    // What the taxels have in common is no noise where it would count as a vibration by the rest.
+    const double factor = sensor.taxels.noise_factor;
+    if (!(factor > 1 && fit.shared > 1 - 1 / (factor * factor))) {
+      return {fit.deviations, until, false};
     }
-    const double noise = thousandth * largest_reading(recording);
-    return {std::vector<double>(taxels, noise),
-            "set to 1/1000 of the largest reading, because the first samples have no usable noise"};
+    shakes = true;
+    why = fit.cause;
+  } catch (const fingerpad::parameter_error& error) {  // the part is too short or has no noise
+    why = error.what();
   }
+  if (sensor.quiet_until_s) {
+    fail("sensor.json",
+         "foam.quiet_until_s = " + format("%.4g", *sensor.quiet_until_s) + ": " + why);
+  }
+  const double noise = thousandth * largest_reading(recording);
+  return {std::vector<double>(taxels, noise),
+          std::string("set to 1/1000 of the largest reading, because ") +
+              (shakes ? "the array shakes in the first samples"
+                      : "the first samples have no usable noise"),
+          shakes};
 }
 
 FoamStep::FoamStep(const FoamRecording& recording, const std::vector<FoamNoise>& noise)

@@ -39,6 +39,7 @@ struct FoamRow {
 struct FoamNoise {
   std::vector<double> deviations;  ///< row by row; NaN for a dead taxel
   std::string source;              ///< origin of the noise, in words
+  bool shakes = false;             ///< the first samples shake, and no noise can be measured
 };
 
 /// The noise from sensor.json, else estimated from the quiet part given there. Without either it is

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
 #include "common/failure.hpp"
@@ -44,6 +45,54 @@ Frames without_contact(Frames frames, const fingerpad::GelOptions& options) {
   });
   frames.erase(touched, frames.end());
   return frames;
+}
+
+/// How much the brightness of a frame changes within some dots, relative to it: the dots are taken
+/// out, and what the lamps change over the frame. A contact adds to it.
+double roughness(const cv::Mat& frame, int cell_px) {
+  cv::Mat cells, smooth;
+  cv::resize(frame, cells, frame.size() / cell_px, 0, 0, cv::INTER_AREA);
+  cells.convertTo(cells, CV_8U, frame.depth() == CV_16U ? 1.0 / 256 : 1);
+  cv::medianBlur(cells, cells, 7);  // a dot is 3.5 cells wide
+  cells.convertTo(cells, CV_32F);
+  cv::GaussianBlur(cells, smooth, {}, 8);
+  cv::divide(cells, cv::max(smooth, 1), cells);
+  const cv::Mat inner = cells({4, 4, cells.cols - 8, cells.rows - 8});
+  return cv::norm(inner, cv::Mat(inner.size(), inner.type(), cv::Scalar::all(1))) /
+         std::sqrt(inner.total());
+}
+
+/// The smoothest of some frames of the recording and those after it, if the first ones differ from
+/// it and are rougher: they show a contact then.
+std::optional<Frames> free_later(Recording& recording,
+                                 const Frames& first,
+                                 const fingerpad::GelOptions& options,
+                                 DamagedFrames& damaged) {
+  const int most = (std::min)(recording.frames.size(), 300), step = 1 + most / 25;
+  constexpr double clearly = 1.05;
+  const cv::Size size = recording.reference.size();
+  if ((std::min)(size.width, size.height) < 16 * options.cell_px) {
+    return std::nullopt;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  int smoothest = 0;
+  recording.frames.seek(0);
+  for (int k = 0; k < most; ++k) {
+    const cv::Mat frame = next_whole_frame(recording.frames, size, damaged);
+    if (k > recording.first_frame && k % step == 0 && !frame.empty() &&
+        usually_exposed({first.front(), frame, frame})[0]) {
+      const double seen = roughness(frame, options.cell_px);
+      smoothest = seen < least ? k : smoothest;
+      least = std::fmin(seen, least);
+    }
+  }
+  if (!(roughness(first.front(), options.cell_px) > clearly * least)) {
+    return std::nullopt;
+  }
+  const Frames later =
+      without_contact(read(recording.frames, size, smoothest, first_frames, damaged), options);
+  const fingerpad::GelResult seen = fingerpad::GelContact(later, options)(first.front());
+  return seen.ok() && !seen.in_contact() ? std::nullopt : std::optional(later);
 }
 
 /// How far the dots of a frame are from a smooth grid, as a fraction of their pitch: the root mean
@@ -141,6 +190,12 @@ void leave_out_unlike(FreePad& pad, const std::string& place) {
   pad.frames = std::move(kept);
 }
 
+Finding begins_with_contact() {
+  return {"frames, first frame", "the recording begins with a contact",
+          "Begin with nothing in contact, if the dots are to be followed from the free pad on.",
+          false};
+}
+
 /// Leaves out the frames of `place` that show a contact, by comparison with the first frames.
 void leave_out_touched(FreePad& pad,
                        const std::string& place,
@@ -168,10 +223,7 @@ void leave_out_touched(FreePad& pad,
                                : place + ", without those that show a contact";
     pad.frames = alike.empty() ? first : alike;
   } else if (of_first > clearly * of_different) {
-    pad.told.push_back({"frames, first frame", "the recording begins with a contact",
-                        "Begin with nothing in contact, if the dots are to be followed from the "
-                        "free pad on.",
-                        false});
+    pad.told.push_back(begins_with_contact());
     pad.frames = different;
   } else {
     pad.told.push_back({place, count + "differ from the first frames of the recording",
@@ -199,6 +251,8 @@ FreePad free_pad_of(Recording& recording, const DotSource& dots) {
     }
   } else if (!recording.sensor.reference_frame.empty()) {
     pad = {{recording.reference}, "the reference in sensor.json", {}};
+  } else if (auto later = free_later(recording, first, options, damaged)) {
+    return {*later, "the smoothest frames of the recording", {begins_with_contact()}};
   } else {
     return {first, "the start of the recording, where nothing may touch the pad", {}};
   }

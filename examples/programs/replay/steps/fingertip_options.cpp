@@ -110,19 +110,12 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   return settings;
 }
 
-std::string fault_of_pressure(const Recording& recording) {
+std::optional<double> free_pressure_mpa(const Recording& recording) {
   const auto& [radius_mm, height_mm] = recording.sensor.pad;
   const auto& rim = recording.sensor.rim;
-  const auto& pressures = recording.signals.pressures_mpa;
-  if (!rim || !rim->membrane_modulus_n_per_mm || !rim->stress_free_inclination_rad ||
-      pressures.empty()) {
-    return "";
+  if (!rim || !rim->membrane_modulus_n_per_mm || !rim->stress_free_inclination_rad) {
+    return std::nullopt;
   }
-  double least_mpa = pressures.begin()->second;
-  for (const auto& [frame, mpa] : pressures) {
-    least_mpa = std::fmin(least_mpa, mpa);
-  }
-  constexpr double share = 0.08;  // what the height is known to allows so much
   const fingerpad::FreePad<double> pad(
       {radius_mm, radius_mm * std::tan(*rim->stress_free_inclination_rad / 2), rim->mooney_share});
   double low = 0, high = 1;  // per mm
@@ -131,15 +124,31 @@ std::string fault_of_pressure(const Recording& recording) {
     const auto free = pad.rim(load);
     (free && free->apex_mm < height_mm ? low : high) = load;
   }
-  const double needed_mpa = low * *rim->membrane_modulus_n_per_mm;
-  if (!(least_mpa < (1 - share) * needed_mpa)) {
+  return low * *rim->membrane_modulus_n_per_mm;
+}
+
+std::string fault_of_pressure(const Recording& recording) {
+  const auto needed_mpa = free_pressure_mpa(recording);
+  const auto& pressures = recording.signals.pressures_mpa;
+  if (!needed_mpa || pressures.empty()) {
+    return "";
+  }
+  double least_mpa = pressures.begin()->second;
+  for (const auto& [frame, mpa] : pressures) {
+    least_mpa = std::fmin(least_mpa, mpa);
+  }
+  constexpr double share = 0.08;   // what the height is known to allows so much
+  constexpr double pressed = 0.5;  // more than a press adds
+  const bool is_low = least_mpa < (1 - share) * *needed_mpa;
+  if (!is_low && !(least_mpa > (1 + pressed) * *needed_mpa)) {
     return "";
   }
   char text[256];
   std::snprintf(text, sizeof text,
-                "the lowest pressure is %.4f MPa, but the free pad needs about %.4f MPa to be %.2f "
+                "the lowest pressure is %.4f MPa, but the free pad needs %s %.4f MPa to be %.2f "
                 "mm high (pad.apex_height_mm)",
-                least_mpa, needed_mpa, height_mm);
+                least_mpa, is_low ? "about" : "only", *needed_mpa,
+                recording.sensor.pad.apex_height_mm);
   return text;
 }
 

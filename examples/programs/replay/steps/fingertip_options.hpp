@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -48,7 +49,11 @@ struct FingertipSettings {
 /// needs, is not set. The recording must outlive the settings. Throws fingerpad::parameter_error.
 FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& free_dots_px);
 
-/// Says that the pressure is too low to make the free pad as high as it is; empty if it is not.
+/// The pressure that makes the free pad as high as it is; none if its rubber is not known.
+std::optional<double> free_pressure_mpa(const Recording& recording);
+
+/// Says that the pressure is too low or too high for the height of the free pad; empty if it is
+/// not.
 std::string fault_of_pressure(const Recording& recording);
 
 /// Why a recording has no six-axis forces; empty if it has them.
