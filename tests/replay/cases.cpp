@@ -210,6 +210,17 @@ TEST_CASE("cases: names of frames are sorted by their numbers") {
   CHECK(is_in_time(recording.slips()));
 }
 
+TEST_CASE("cases: a picture that is missing among numbered ones is told") {
+  Recording whole, other;
+  for (Recording* recording : {&whole, &other}) {
+    recording->write("frames", gel(Kind::hold));
+    recording->write("free", gel(Kind::free));
+  }
+  fs::remove(other.folder() / "frames" / (plain_name(7) + ".png"));
+  CHECK(whole.checked() == "");
+  CHECK(has(other.checked(), "a number is missing after " + plain_name(6) + ".png"));
+}
+
 TEST_CASE("cases: pictures with transparency, of 16 bit, of grey, and a first one that is dark") {
   const int kind = GENERATE(0, 1, 2, 3);
   const Change change = [kind](const cv::Mat& frame, int k) {
@@ -498,7 +509,7 @@ TEST_CASE("cases: a full scale that nobody has stated is told") {
 }
 
 TEST_CASE("cases: readings that were lost and written as a number are told and left out") {
-  const std::string lost = GENERATE(as<std::string>(), "0", "-1", "-999", "0, all at once");
+  const std::string lost = GENERATE(as<std::string>(), "0", "-1", "-999", "9999", "0, all at once");
   INFO(lost);
   cv::RNG random(7);
   const Array array([&](int k, Array::Cells& cells) {
@@ -507,7 +518,10 @@ TEST_CASE("cases: readings that were lost and written as a number are told and l
       cells[c] = is_lost ? lost.substr(0, lost.find(',')) : cells[c];
     }
   });
-  CHECK(has(array.checked(), "fall to " + lost.substr(0, lost.find(',')) + " for a moment"));
+  test::replace_in(array.folder() / "sensor.json", "\"saturated_at\": 4095,", "");
+  CHECK(has(array.checked(), lost == "9999"
+                                 ? "are at full scale, 9999"
+                                 : "fall to " + lost.substr(0, lost.find(',')) + " for a moment"));
   std::string alarm;
   for (const test::Line& line : array.table("frames.csv")) {
     alarm = alarm.empty() && line.at("preslip") == "1" ? line.at("time_s") : alarm;
@@ -539,6 +553,29 @@ TEST_CASE("cases: taxels of a side that never change are noted, untouched or dea
     noted = noted || has(finding.what, "16 of 64 taxels never change");
   }
   CHECK(noted);
+}
+
+TEST_CASE("cases: an array of which nothing is read before it holds an object warns in time") {
+  const Array array([](int k, Array::Cells& cells) {
+    for (std::size_t c = 2; k < 64 && c < cells.size(); ++c) {
+      cells[c] = "0";
+    }
+  });
+  test::replace_in(array.folder() / "sensor.json", "\"quiet_until_s\": 3,", "");
+  double last_alarm_s = 0;
+  for (const test::Line& line : array.table("frames.csv")) {
+    last_alarm_s = line.at("preslip") == "1" ? std::stod(line.at("time_s")) : last_alarm_s;
+  }
+  CHECK(last_alarm_s > 6.5);  // when the object begins to creep
+}
+
+TEST_CASE("cases: all taxels drift by the same, and that is no fall of their readings") {
+  const Array array([](int k, Array::Cells& cells) {
+    for (std::size_t c = 2; c < cells.size(); ++c) {
+      cells[c] = number(std::stod(cells[c]) + 400.0 * k / 300);
+    }
+  });
+  CHECK_FALSE(has(array.refusal(), "fall where they should rise"));
 }
 
 TEST_CASE("cases: an array that reads less where it is pressed more is refused") {
@@ -667,6 +704,10 @@ TEST_CASE("cases: a reference depth that replay refuses, and another light, are 
                 })(picture, 0));
   }
   CHECK(has(other_light.checked(), "its light is not that of the reference"));
+  for (const test::Line& line : other_light.table("frames.csv")) {
+    CHECK(line.at("contact_status") != "ok");
+    CHECK(line.at("look_up_status") != "ok");
+  }
 }
 
 TEST_CASE("cases: saturated frames give no confident depth") {

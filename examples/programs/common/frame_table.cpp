@@ -34,6 +34,7 @@ Text contact_status(const Row& row) {
          : touch.contact_in_doubt && touch.contact.in_contact() ? "edge in doubt"
          : touch.contact_in_doubt                               ? "force without region"
          : row.picture_fault != nullptr                         ? row.picture_fault
+         : row.touch.light_in_doubt()                           ? "light has changed"
                                                                 : "ok";
 }
 
@@ -42,6 +43,7 @@ Text look_up_status(const Row& row) {
   return !row.has_curves                              ? ""
          : !row.touch.contact.ok()                    ? "contact in doubt"
          : row.picture_fault != nullptr               ? row.picture_fault
+         : row.touch.light_in_doubt()                 ? "light has changed"
          : status == fingerpad::ForceStatus::measured ? "ok"
                                                       : name_of(status);
 }

@@ -48,8 +48,16 @@ struct Light {
   int same = 0;                   ///< frames equal to the previous one
   std::map<int, double> touched;  ///< share of the pad that is lighter or darker, by frame
   DamagedFrames damaged;
+  std::string gap;  ///< what is missing where names count on by one, as "after 0004.png"
   double dark = 1;  ///< least share of the pad with less than half of the reference's light
 };
+
+/// The number at the end of a name; -1 without one of at most nine digits.
+long number_of(const std::filesystem::path& file) {
+  const std::string name = file.stem().string();
+  const std::string digits = name.substr(name.find_last_not_of("0123456789") + 1);
+  return digits.empty() || digits.size() > 9 ? -1 : std::stol(digits);
+}
 
 /// Share of squares of 16 px in the pad whose light differs by more than 2 % from the reference's.
 double touched_share(const cv::Mat_<float>& ratio, const cv::Mat_<uchar>& pad, double usual) {
@@ -68,12 +76,19 @@ double touched_share(const cv::Mat_<float>& ratio, const cv::Mat_<uchar>& pad, d
 Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uchar>& pad) {
   Light seen;
   std::vector<double> levels, blocks;
+  std::filesystem::path last;
+  int by_one = 0, by_more = 0;
   cv::Mat_<float> before;
   cv::Mat_<float> free_light = light_of(reference);
   cv::max(free_light, 1, free_light);
   frames.seek(0);
   for (int k = 0; k < (std::min)(frames.size(), most_frames); ++k) {
     const cv::Mat frame = next_whole_frame(frames, reference.size(), seen.damaged);
+    const long step = number_of(frames.last_file()) - number_of(k > 0 ? last : frames.last_file());
+    by_one += step == 1 ? 1 : 0;
+    by_more += step > 1 ? 1 : 0;
+    seen.gap = seen.gap.empty() && step > 1 ? "after " + last.filename().string() : seen.gap;
+    last = frames.last_file();
     if (frame.empty()) {
       continue;
     }
@@ -100,6 +115,7 @@ Light light_in(FrameSource& frames, const cv::Mat& reference, const cv::Mat_<uch
     }
     before = light;
   }
+  seen.gap = by_one > 2 * by_more ? seen.gap : "";
   seen.level = median_of(levels);
   seen.blocks = median_of(blocks);
   return seen;
@@ -110,6 +126,13 @@ std::string percent(double share) {
 }
 
 void tell_exposure(const std::string& place, const Light& light, Findings& findings) {
+  if (!light.gap.empty()) {
+    findings.push_back(
+        {place,
+         "a number is missing " + light.gap +
+             ", and frames are counted in the order of their names",
+         "Give the picture back, or number the frames of the tables by that order."});
+  }
   for (const auto& [frame, why] : light.damaged) {
     findings.push_back({why, "it is left out", "Copy the picture again, or delete it."});
   }

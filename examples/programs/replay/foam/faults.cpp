@@ -51,13 +51,15 @@ int held_at(const TaxelTable& table, double value) {
 }
 
 /// Takes the largest reading for the full scale if it is the largest number of a counter of 8 to 16
-/// bit and is read often, or if several taxels stay at it.
+/// bit and is read often, if several taxels stay at it, or if it is read often and no other reading
+/// is half of it, as a number that stands for no reading.
 void find_full_scale(FoamRecording& recording) {
   TaxelTable& table = recording.table;
   double& full = recording.sensor.taxels.saturated_at;
-  double most = 0;
+  double most = 0, second = 0;
   bool whole = true;
   for (const double reading : table.readings) {
+    second = reading > most ? most : reading < most ? std::fmax(second, reading) : second;
     most = std::fmax(most, reading);
     whole = whole && !(std::isfinite(reading) && reading != std::floor(reading));
   }
@@ -66,7 +68,8 @@ void find_full_scale(FoamRecording& recording) {
   const bool is_counter = whole && bits >= 8 && bits <= 16 && bits == std::floor(bits);
   const bool is_fine = !whole || bits >= 6;  // two taxels hardly hold the same number by chance
   if (full >= 1e9 && most > 0 &&
-      ((is_counter && std::count(table.readings.begin(), table.readings.end(), most) >= often) ||
+      (((is_counter || 2 * second < most) &&
+        std::count(table.readings.begin(), table.readings.end(), most) >= often) ||
        (is_fine && held_at(table, most) > 1))) {
     full = most;
   }
@@ -108,7 +111,8 @@ void leave_out_spikes(FoamRecording& recording) {
       const std::size_t at = sample * n + taxel;
       const auto [low, high] =
           std::minmax({all[at - 2 * n], all[at - n], all[at + n], all[at + 2 * n]});
-      if (high - low < least / 4 && (all[at] > high + least || all[at] < low - least)) {
+      if (all[at] < recording.sensor.taxels.saturated_at && high - low < least / 4 &&
+          (all[at] > high + least || all[at] < low - least)) {
         table.readings[at] = std::numeric_limits<double>::quiet_NaN();
         ++counted[taxel];
       }
@@ -447,7 +451,8 @@ void set_zero(const std::filesystem::path& folder, FoamRecording& recording) {
   const double below = *std::min_element(low.begin(), low.end());
   const Line started = line_through(rise, first), held = line_through(change, high);
   const Line least_read = line_through(change, low);
-  if (n >= 8 && least_read.correlation < -0.98 && least_read.slope < -0.8) {
+  if (n >= 8 && least_read.correlation < -0.98 && least_read.slope < -0.8 &&
+      std::abs(most - least_read.offset) < 0.05 * most) {
     fail(folder / "taxels.csv",
          "the readings fall where they should rise: all taxels read about " +
              number(least_read.offset) +

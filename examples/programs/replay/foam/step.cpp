@@ -101,27 +101,30 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
     return sensor.quiet_until_s ? !(time_s > recording.seconds_in(*sensor.quiet_until_s))
                                 : sample < first_windows;
   };
-  bool shakes = false;
-  std::string why;
-  try {
+  // What the taxels have in common is no noise where it would count as a vibration by the rest.
+  const double factor = sensor.taxels.noise_factor;
+  const double most_shared = factor > 1 ? 1 - 1 / (factor * factor) : 1;
+  const auto measured = [&](const auto& is_used) {
     fingerpad::TaxelNoiseCalibration calibration(first.rows(), first.cols(), sensor.taxels);
-    for (int sample = 0; sample < recording.table.samples() && is_quiet(sample); ++sample) {
+    for (int sample = 0; sample < recording.table.samples() && is_used(sample); ++sample) {
       calibration.add(recording.finger(sample, finger),
                       recording.table.times_s[static_cast<std::size_t>(sample)]);
     }
-    const std::string until =
-        sensor.quiet_until_s
-            ? format("measured until %.4g s", *sensor.quiet_until_s)
-            : format("measured in the first %.0f samples", static_cast<double>(first_windows)) +
-                  ", which are assumed to be quiet";
-    const auto fit = calibration.fit();
-    // What the taxels have in common is no noise where it would count as a vibration by the rest.
-    const double factor = sensor.taxels.noise_factor;
-    if (!(factor > 1 && fit.shared > 1 - 1 / (factor * factor))) {
-      return {fit.deviations, until, false};
+    return calibration.fit();
+  };
+  bool shakes = false;
+  std::string why;
+  try {
+    const auto fit = measured(is_quiet);
+    shakes = fit.shared > most_shared;
+    why = shakes ? fit.cause : "";
+    if (!shakes) {
+      return {fit.deviations, sensor.quiet_until_s
+                                  ? format("measured until %.4g s", *sensor.quiet_until_s)
+                                  : format("measured in the first %.0f samples",
+                                           static_cast<double>(first_windows)) +
+                                        ", which are assumed to be quiet"};
     }
-    shakes = true;
-    why = fit.cause;
   } catch (const fingerpad::parameter_error& error) {  // the part is too short or has no noise
     why = error.what();
   }
@@ -129,11 +132,17 @@ FoamNoise noise_of(const FoamRecording& recording, int finger) {
     fail("sensor.json",
          "foam.quiet_until_s = " + format("%.4g", *sensor.quiet_until_s) + ": " + why);
   }
+  const std::string because = shakes ? ", because the array shakes in the first samples"
+                                     : ", because the first samples have no usable noise";
+  try {
+    const auto fit = measured([](int) { return true; });
+    if (!(fit.shared > most_shared)) {
+      return {fit.deviations, "measured in the whole recording" + because, shakes};
+    }
+  } catch (const fingerpad::parameter_error&) {
+  }
   const double noise = thousandth * largest_reading(recording);
-  return {std::vector<double>(taxels, noise),
-          std::string("set to 1/1000 of the largest reading, because ") +
-              (shakes ? "the array shakes in the first samples"
-                      : "the first samples have no usable noise"),
+  return {std::vector<double>(taxels, noise), "set to 1/1000 of the largest reading" + because,
           shakes};
 }
 

@@ -43,7 +43,8 @@ struct FoamNoise {
 };
 
 /// The noise from sensor.json, else estimated from the quiet part given there. Without either it is
-/// estimated from the first four windows, or else set to a thousandth of the largest reading.
+/// estimated from the first four windows, or else from the whole recording, or else set to a
+/// thousandth of the largest reading.
 /// Throws Failure if the given quiet part does not allow an estimate.
 FoamNoise noise_of(const FoamRecording& recording, int finger);
 
