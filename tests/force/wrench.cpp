@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/allocations.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/rim_marks.hpp"
@@ -389,6 +390,51 @@ TEST_CASE("wrench: a sheet that bends at its clamp needs a loose rim, and its th
   }
 }
 
+TEST_CASE("wrench: a membrane thicker on one side needs to be told", "[wrench]") {
+  for (const test::UnevenScene& uneven : test::uneven_scenes()) {
+    const RimScene& s = uneven.scene;
+    const auto largest = s.largest();
+    const auto mean_of = [&](double share, bool is_loose, int& wrong_ok) {
+      auto options = SeenRim::options_of(s, is_loose);
+      options.cap.uneven_x = share * std::cos(0.6);
+      options.cap.uneven_y = share * std::sin(0.6);
+      std::array<double, 4> mean = {};
+      wrong_ok = 0;
+      constexpr int draws = 4;
+      for (int draw = 0; draw < draws; ++draw) {
+        SeenRim rim(s, options, 0.02, static_cast<std::uint64_t>(draw));
+        const long before = test::allocations();
+        CHECK(rim.wrench.begin(s.frames[0].pressure_mpa));
+        CHECK(test::allocations() == before);
+        for (std::size_t k = 4; k < 9; ++k) {
+          const auto result = rim.fit(k);
+          REQUIRE(result.has_force());
+          const auto error = errors(result, s.frames[k].load);
+          for (std::size_t part = 0; part < 4; ++part) {
+            mean[part] += 100 * error[part] / largest[part] / (5 * draws);
+          }
+          wrong_ok += result.ok() && error[0] > 0.03 * std::fabs(s.frames[k].load[2]) / 2 ? 1 : 0;
+        }
+      }
+      return mean;
+    };
+    int wrong = 0, wrong_if_told = 0, wrong_if_clamped = 0;
+    const auto untold = mean_of(0, true, wrong), told = mean_of(uneven.share, true, wrong_if_told);
+    const auto clamped = mean_of(uneven.share, false, wrong_if_clamped);
+    CAPTURE(s.name, untold, told, clamped, wrong, wrong_if_told);
+    if (uneven.grows) {
+      CHECK(wrong_if_told + wrong_if_clamped == 0);
+      CHECK(told[0] < 0.25);
+      CHECK(told[1] < 0.8);
+      CHECK(told[2] < 0.85);
+      CHECK(told[3] < 0.12);
+    }
+    for (std::size_t part = 0; part < 4 && uneven.share > 0; ++part) {
+      CHECK((part == 1 || told[part] < 0.5 * untold[part]));
+    }
+  }
+}
+
 TEST_CASE("wrench: what a wrong modulus does, or a wrong gauge in the free picture, is known",
           "[wrench]") {
   struct Fault {
@@ -509,5 +555,7 @@ TEST_CASE("wrench: bad parameters are refused by name", "[wrench]") {
   CHECK(said({.max_marks = 3}) == "WrenchOptions: max_marks = 3, must be in [20, 100000]");
   CHECK(said({.thickness_mm = -1}) == "WrenchOptions: thickness_mm = -1, must be finite and >= 0");
   CHECK(said({.full_scale_n = -1}) == "WrenchOptions: full_scale_n = -1, must be finite and >= 0");
+  CHECK(said({.cap = {.uneven_y = 0.4}}) ==
+        "StressFreeCap: uneven_x and uneven_y together = 0.4, must be in [0, 0.3]");
   CHECK(said({.cap = {.height_mm = 0}}) == "StressFreeCap: height_mm = 0, must be finite and > 0");
 }

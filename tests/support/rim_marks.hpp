@@ -81,6 +81,26 @@ inline const std::vector<RimScene>& rim_scenes() {
   return all;
 }
 
+/// Membranes that are thicker toward an azimuth of 0.6 rad, by these shares at the rim: the first
+/// four frames are the free pad at 16, 8, 12 and 20 kPa.
+struct UnevenScene {
+  double share;
+  bool grows;  ///< in proportion to the distance from the axis; else it is the same everywhere
+  RimScene scene;
+};
+inline const std::vector<UnevenScene>& uneven_scenes() {
+  static const std::vector<UnevenScene> all = [] {
+    auto file = open_data("uneven_marks.txt", "uneven marks\n");
+    const auto scenes = read_rim_scenes(file);
+    require_data(scenes.size() == 4, "uneven_marks.txt has other scenes");
+    return std::vector<UnevenScene>{{0, true, scenes[0]},
+                                    {0.04, true, scenes[1]},
+                                    {0.08, true, scenes[2]},
+                                    {0.08, false, scenes[3]}};
+  }();
+  return all;
+}
+
 /// A scene as a camera sees it.
 class SeenRim {
  public:

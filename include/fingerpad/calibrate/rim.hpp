@@ -6,17 +6,22 @@
 // (membrane/free_pad.hpp). docs/force/wrench.md has it from one known weight.
 //
 // At a single pressure the apex says only how far the pad has risen above its stress-free height,
-// so an error of that height is one of mu t. Several pressures give both.
+// so an error of that height is one of mu t. Several pressures give both. Where the membrane is
+// thicker on one side, they show it, too: its dots then move otherwise than those of a round pad.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "fingerpad/calibrate/fit.hpp"
 #include "fingerpad/core/check.hpp"
+#include "fingerpad/core/point.hpp"
 #include "fingerpad/core/scalar.hpp"
+#include "fingerpad/force/wrench.hpp"
 #include "fingerpad/membrane/free_pad.hpp"
 
 namespace fingerpad {
@@ -61,8 +66,9 @@ struct [[nodiscard]] RimFit {
 
 namespace cause {
 inline constexpr char one_pressure[] =
-    "the pressures hardly differ, so mu t depends on the stress-free height: record several, or "
-    "use a weight";
+    "the pressures hardly differ, so mu t depends on the stress-free height, and where it is "
+    "larger "
+    "does not show: record several, or use a weight for mu t";
 inline constexpr char no_such_cap[] =
     "the apex heights are not those of an inflated cap: check radius, rubber and units";
 inline constexpr char modulus_uncertain[] =
@@ -169,6 +175,124 @@ inline RimFit fit_rim(const StressFreeCap<double>& cap,
                 : most < 1.2 * least              ? cause::one_pressure
                 : covariance(0, 0) > square(0.05) ? cause::modulus_uncertain
                                                   : nullptr;
+  }
+  return fit;
+}
+
+/// Where the dots of the free pad are seen at a pressure, the mean of its frames: in the same order
+/// at each pressure, NaN where one is not seen.
+struct FreeDots {
+  double pressure_mpa = 0;  ///< > 0
+  std::span<const Point2<double>> px;
+};
+
+/// Where a membrane is thicker.
+struct [[nodiscard]] UnevenFit {
+  const char* cause = cause::not_converged;  ///< likely mistake; nullptr if it looks good
+  /// For `StressFreeCap::uneven_x` and `uneven_y`, with the standard deviation of each.
+  Point2<double> share = {not_a_number<double>(), not_a_number<double>()};
+  double share_sd = not_a_number<double>();
+  Point2<double> axis_px = share;  ///< of the pad, from the camera's
+  Index dots = 0;                  ///< used
+
+  bool ok() const { return cause == nullptr; }
+};
+
+/// By the pad's motion from one pressure to the next. The stress-free place of each dot must be the
+/// same in all pictures; unevenness, axis and modulus that make it so are found by Gauss and
+/// Newton's method. An axis that is off alone moves the dots otherwise. Refuses (parameter_error)
+/// fewer than two pressures, and lists of different size.
+template <class CameraType>
+UnevenFit fit_uneven(const CameraType& camera,
+                     WrenchOptions options,
+                     std::span<const FreeDots> pictures) {
+  constexpr const char* owner = "fit_uneven";
+  expects(pictures.size() > 1, owner, "pictures", pictures.size(), ">= 2");
+  const std::size_t dots = pictures.front().px.size(), all = 2 * dots * pictures.size();
+  double least = pictures.front().pressure_mpa, most = least;
+  for (const FreeDots& picture : pictures) {
+    require(owner, {{"pressure_mpa", picture.pressure_mpa, positive}});
+    expects(picture.px.size() == dots, owner, "dots of a picture", picture.px.size(), "of all");
+    least = (std::min)(least, picture.pressure_mpa);
+    most = (std::max)(most, picture.pressure_mpa);
+  }
+  // unknown: unevenness, axis in px, ln(mu t)
+  using Unknowns = Eigen::Matrix<double, 5, 1>;
+  const Unknowns step_of(0.01, 0.01, 0.2, 0.2, 0.01);
+  const double modulus = options.modulus_n_per_mm;
+  std::vector<char> is_used(dots, 1);
+  // how far the place in each picture is off the mean of all, in mm; false: no such pad
+  const auto look = [&](const Unknowns& x, Eigen::VectorXd& off) {
+    options.cap.uneven_x = x[0];
+    options.cap.uneven_y = x[1];
+    options.modulus_n_per_mm = modulus * std::exp(x[4]);
+    Wrench<CameraType> wrench(camera, options);
+    std::vector<Point2<double>> places(dots * pictures.size()), mean(dots, {0, 0});
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      const std::size_t k = n % dots;
+      const FreeDots& picture = pictures[n / dots];
+      if (k == 0 && !wrench.begin(picture.pressure_mpa)) {
+        return false;
+      }
+      const auto at = wrench.place_in_free_picture(picture.px[k] - Point2<double>{x[2], x[3]});
+      is_used[k] = at ? is_used[k] : 0;
+      if (at) {
+        const double first = n < dots ? at->azimuth_rad : places[k].y;
+        places[n] = {at->arc_mm,
+                     first + std::remainder(at->azimuth_rad - first, 2 * std::numbers::pi)};
+        mean[k] += places[n] / static_cast<double>(pictures.size());
+      }
+    }
+    off.resize(static_cast<Eigen::Index>(all));
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      const Point2<double> change = places[n] - mean[n % dots];
+      off[static_cast<Eigen::Index>(2 * n)] = change.x;
+      off[static_cast<Eigen::Index>(2 * n + 1)] = options.cap.rho_mm(mean[n % dots].x) * change.y;
+    }
+    return true;
+  };
+
+  UnevenFit fit;
+  if (most < 1.2 * least) {
+    fit.cause = cause::one_pressure;
+    return fit;
+  }
+  Unknowns x = Unknowns::Zero();
+  Eigen::VectorXd now, more;
+  Eigen::Matrix<double, Eigen::Dynamic, 5> slopes(static_cast<Eigen::Index>(all), 5);
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    bool is_pad = look(x, now);
+    for (Eigen::Index k = 0; k < 5 && is_pad; ++k) {
+      Unknowns moved = x;
+      moved[k] += step_of[k];
+      is_pad = look(moved, more);
+      slopes.col(k) = (more - now) / step_of[k];
+    }
+    for (std::size_t row = 0; row < all; ++row) {
+      if (is_used[row / 2 % dots] == 0) {
+        slopes.row(static_cast<Eigen::Index>(row)).setZero();
+        now[static_cast<Eigen::Index>(row)] = 0;
+      }
+    }
+    fit.dots = std::count(is_used.begin(), is_used.end(), 1);
+    if (!is_pad || fit.dots < 20) {
+      return fit;
+    }
+    const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> normal(slopes.transpose() * slopes);
+    const Unknowns step = normal.solve(-slopes.transpose() * now);
+    x += step;
+    x.head(2) *= (std::min)(1.0, 0.25 / (std::max)(x.head(2).norm(), 1e-9));
+    if (step.cwiseQuotient(step_of).cwiseAbs().maxCoeff() < 0.01) {
+      const auto of_dot = static_cast<double>(pictures.size() - 1);
+      const double variance =
+          now.squaredNorm() / (2 * static_cast<double>(fit.dots) * of_dot - 5) *
+          (normal.solve(Unknowns::Unit(0))[0] + normal.solve(Unknowns::Unit(1))[1]) / 2;
+      fit.share = {x[0], x[1]};
+      fit.share_sd = std::sqrt(variance);
+      fit.axis_px = {x[2], x[3]};
+      fit.cause = nullptr;
+      return fit;
+    }
   }
   return fit;
 }

@@ -10,6 +10,7 @@
 // plate.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,6 +116,17 @@ class Wrench {
         annulus_(options.cap, march_of(options, false)),
         tangent_(options.cap, march_of(options, true)) {
     require(camera);
+    if (options.cap.is_uneven()) {
+      StressFreeCap<double> turned = options.cap;
+      turned.uneven_x = std::hypot(turned.uneven_x, turned.uneven_y);
+      turned.uneven_y = 0;
+      uneven_.emplace(turned, AnnulusOptions{.reach_mm = 0.7 * turned.arc_mm(),
+                                             .azimuths = 12,
+                                             .steps = 20,
+                                             .harmonics = 1,
+                                             .offset_harmonics = -1});
+      leaning_.resize(uneven_->parameters());
+    }
     const std::size_t n = annulus_.parameters(), width = tangent_.width();
     const auto count = static_cast<Eigen::Index>(n);
     parameters_.assign(n, 0.0);
@@ -171,8 +183,17 @@ class Wrench {
       return {};
     }
     const auto seen = point_at(camera_, px.y, px.x, 0.0);
-    const auto arc = arc_of(free_radius_mm_, std::hypot(seen.x, seen.y));
-    return arc ? std::optional<Mark>({*arc, std::atan2(seen.y, seen.x), px}) : std::nullopt;
+    const double radius_mm = std::hypot(seen.x, seen.y);
+    double azimuth_rad = std::atan2(seen.y, seen.x);
+    auto arc = arc_of(free_radius_mm_, radius_mm);
+    for (int step = 0; step < 3 && uneven_ && arc; ++step) {
+      const double from_thick = azimuth_rad - thick_rad(), inward = *arc;
+      arc = arc_of(free_radius_mm_,
+                   radius_mm - at_arc(off_outward_mm_, inward) * std::cos(from_thick));
+      azimuth_rad = std::atan2(seen.y, seen.x) -
+                    at_arc(off_around_mm_, inward) / radius_mm * std::sin(from_thick);
+    }
+    return arc ? std::optional<Mark>({*arc, azimuth_rad, px}) : std::nullopt;
   }
 
   /// Force and moment from the marks of a frame, which nothing touches. O(marks x parameters^2);
@@ -273,6 +294,11 @@ class Wrench {
   double arc_at(std::size_t k) const {
     return reach_mm() * static_cast<double>(k) / static_cast<double>(free_radius_mm_.size() - 1);
   }
+  double at_arc(const FreeRadii& of_arc, double arc_mm) const {
+    const double cells = arc_mm / arc_at(1);
+    const auto k = (std::min)(static_cast<std::size_t>(cells), of_arc.size() - 2);
+    return std::lerp(of_arc[k], of_arc[k + 1], cells - static_cast<double>(k));
+  }
   /// Empty outside the picture of the free membrane within the reach.
   std::optional<double> arc_of(const FreeRadii& radii_mm, double radius_mm) const {
     // an undercut wall is seen from its widest circle inward
@@ -284,6 +310,57 @@ class Wrench {
     const double share = (*(inner - 1) - radius_mm) / (*(inner - 1) - *inner);
     const auto before = static_cast<std::size_t>(inner - radii_mm.begin() - 1);
     return arc_at(before) + share * arc_at(1);
+  }
+
+  double thick_rad() const { return std::atan2(options_.cap.uneven_y, options_.cap.uneven_x); }
+
+  /// The first harmonics of how the membrane of a free pad leaves its rim, if it is thicker on one
+  /// side: no force and no moment, and it is whole further inward, which the second harmonic of its
+  /// circles in plan would not be.
+  bool lean(const FreeRim<double>& rim, double load) {
+    Annulus<double>& pad = *uneven_;  // the thick side toward x
+    std::fill(leaning_.begin(), leaning_.end(), 0.0);
+    leaning_[0] = rim.stretch * std::cos(rim.slope_rad);
+    leaning_[6] = rim.stretch * std::sin(rim.slope_rad);
+    leaning_[9] = load;
+    constexpr std::array<std::size_t, 4> unknowns = {1, 5, 6, 7};
+    Eigen::Vector4d step;
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      pad.march(leaning_);
+      const auto at_rim = pad.load_at_rim();
+      pad.slopes_of_load({of_load_.data(), 6 * pad.width()});
+      Eigen::Vector4d miss(at_rim.force.x, at_rim.force.z, at_rim.moment.y, 0);
+      Eigen::Matrix4d by = Eigen::Matrix4d::Zero();
+      for (Eigen::Index k = 0; k < 4; ++k) {
+        for (Eigen::Index row = 0; row < 3; ++row) {  // F_x, F_z, M_y
+          by(row, k) = of_load_.data()[static_cast<std::size_t>(2 * row) * pad.width() +
+                                       unknowns[static_cast<std::size_t>(k)]];
+        }
+      }
+      const Index n = pad.options().azimuths;
+      for (Index j = 0; j < n; ++j) {
+        const double phi = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(n);
+        const auto place = pad.place(pad.options().reach_mm, phi);
+        const double c = std::cos(2 * phi), s = std::sin(2 * phi);
+        pad.slopes_at(place, of_position_);
+        miss[3] += c * pad.at(place).x + s * pad.at(place).y;
+        for (Eigen::Index k = 0; k < 4; ++k) {
+          const std::size_t of = unknowns[static_cast<std::size_t>(k)];
+          by(3, k) += c * of_position_[of] + s * of_position_[pad.width() + of];
+        }
+      }
+      step = by.inverse() * -miss;
+      for (std::size_t k = 0; k < 4; ++k) {
+        leaning_[unknowns[k]] += step[static_cast<Eigen::Index>(k)];
+      }
+    }
+    const double c = std::cos(thick_rad()), s = std::sin(thick_rad());
+    double *inward = centre_.data(), *around = inward + annulus_.terms(),
+           *up = around + annulus_.terms();
+    inward[1] = c * leaning_[1], inward[2] = s * leaning_[1];
+    around[1] = -s * leaning_[5], around[2] = c * leaning_[5];
+    up[0] = leaning_[6], up[1] = c * leaning_[7], up[2] = s * leaning_[7];
+    return step.cwiseAbs().maxCoeff() < 1e-2;
   }
 
   /// False if no free pad has this load.
@@ -304,12 +381,23 @@ class Wrench {
           (mould_rad - rim->slope_rad) * options_.thickness_mm / std::sqrt(3 * tension);
     }
     centre_.back() = load;
+    if (uneven_ && !lean(*rim, load)) {
+      return false;
+    }
     restart();
     annulus_.march(centre_);
+    const auto seen_at = [&](std::size_t k, double azimuth_rad) {
+      const auto px = pixel_of(camera_, annulus_.at(annulus_.place(arc_at(k), azimuth_rad)));
+      return point_at(camera_, px.y, px.x, 0.0);
+    };
+    const double to = thick_rad(), across = to + std::numbers::pi / 2;
     for (std::size_t k = 0; k < free_radius_mm_.size(); ++k) {
-      const auto px = pixel_of(camera_, annulus_.at(annulus_.place(arc_at(k), 0)));
-      const auto seen = point_at(camera_, px.y, px.x, 0.0);
-      free_radius_mm_[k] = std::hypot(seen.x, seen.y);
+      const auto thick = seen_at(k, to), thin = seen_at(k, to + std::numbers::pi),
+                 side = seen_at(k, across);
+      const double one = std::hypot(thick.x, thick.y), other = std::hypot(thin.x, thin.y);
+      free_radius_mm_[k] = (one + other) / 2;
+      off_outward_mm_[k] = (one - other) / 2;
+      off_around_mm_[k] = side.y * std::cos(across) - side.x * std::sin(across);
     }
     return true;
   }
@@ -518,11 +606,8 @@ class Wrench {
     centre_.back() /= 1 - less;
     parameters_.back() /= 1 - less;
     for (Seen& seen : places_) {
-      const double arc = seen.mark.arc_mm, cells = arc / arc_at(1);
-      const auto k = (std::min)(static_cast<std::size_t>(cells), arc_by_load_mm_.size() - 2);
-      const double by_load =
-          std::lerp(arc_by_load_mm_[k], arc_by_load_mm_[k + 1], cells - static_cast<double>(k));
-      annulus_.shift(seen.place, arc + less * by_load);
+      const double arc = seen.mark.arc_mm;
+      annulus_.shift(seen.place, arc + less * at_arc(arc_by_load_mm_, arc));
     }
     for (int step = 0; step < 2; ++step) {
       annulus_.march(parameters_);
@@ -544,6 +629,9 @@ class Wrench {
   std::vector<double> parameters_, at_slopes_, centre_, before_, of_position_;
   std::vector<double> prior_, weight_;  // of the parameters, and where sd_px is not the noise
   FreeRadii free_radius_mm_ = {}, arc_by_load_mm_ = {};  // the latter with ln of the load
+  FreeRadii off_outward_mm_ = {}, off_around_mm_ = {};   // of an uneven membrane, where it is thick
+  std::optional<Annulus<double>> uneven_;                // of the whole free pad
+  std::vector<double> leaning_;                          // its parameters
   detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd of_load_;  // by parameters
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> normal_, slopes_;

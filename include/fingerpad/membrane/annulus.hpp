@@ -291,6 +291,12 @@ class Annulus {
     }
   }
 
+  /// mu t over that of the axis.
+  S thickness(std::size_t j, const S& rho) const {
+    return S(1) + rho / cap_.base_radius_mm *
+                      (cap_.uneven_x * basis_[j][1] + cap_.uneven_y * basis_[j][2]);
+  }
+
   /// The circle where the march begins.
   void begin(const std::vector<S>& q) {
     load_ = q[parameters() - 1];
@@ -331,13 +337,17 @@ class Annulus {
       const Point3<S> b = column(around_, j, value_) / rho, d = column(along_[0], j, value_);
       if (options_.slopes) {
         auto by = detail::membrane::pull_slopes(d, b, m);
-        for (auto& row : by.by_along) {
-          row = {rho * row[0], rho * row[1], rho * row[2]};
+        const S share = thickness(j, rho);
+        for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            by.by_along[r][c] = rho * share * by.by_along[r][c];
+            by.by_other[r][c] = share * by.by_other[r][c];
+          }
         }
         const std::size_t from = j * 3 * width_;
         combine(by.by_along, &along_[0][from], by.by_other, &around_[from], &y_[from]);
       }
-      put(y_, j, value_, rho * rubber_pull(d, b, m));
+      put(y_, j, value_, rho * thickness(j, rho) * rubber_pull(d, b, m));
       across_[j] = norm(d);
     }
     rim_around_ = around_;
@@ -350,13 +360,14 @@ class Annulus {
     change_around(x, around_);
     for (std::size_t j = 0; j < n_; ++j) {
       const Point3<S> b = inverse * column(around_, j, value_);
-      const Point3<S> pull = inverse * column(y, j, value_);
+      const S share = thickness(j, cap_.rho_mm(arc));
+      const Point3<S> pull = inverse / share * column(y, j, value_);
       const Point3<S> t = detail::membrane::stretch_of_pull(pull, b, m, across_[j]);
       if (options_.slopes) {
-        slopes_of_rates(j, t, b, inverse, y, along);
+        slopes_of_rates(j, t, b, inverse, share, y, along);
       }
       put(along, j, value_, t);
-      put(hoop_, j, value_, rubber_pull(b, t, m));
+      put(hoop_, j, value_, share * rubber_pull(b, t, m));
     }
     change_around(hoop_, y_rate_);
     const std::size_t w = width_;
@@ -387,6 +398,7 @@ class Annulus {
                        const Point3<S>& along,
                        const Point3<S>& b,
                        const S& inverse,
+                       const S& share,
                        const Field& y,
                        Field& along_of_x) {
     using detail::membrane::Matrix3;
@@ -401,7 +413,7 @@ class Annulus {
         for (std::size_t k = 0; k < 3; ++k) {
           s = s + solve[r][k] * across.by_other[k][c];
         }
-        by_y[r][c] = inverse * solve[r][c];
+        by_y[r][c] = inverse / share * solve[r][c];
         by_around[r][c] = -(inverse * s);
       }
     }
@@ -412,8 +424,8 @@ class Annulus {
           s = s + hoop.by_other[r][k] * by_y[k][c];
           t = t + hoop.by_other[r][k] * by_around[k][c];
         }
-        hoop_by_y[r][c] = s;
-        hoop_by_around[r][c] = t;
+        hoop_by_y[r][c] = share * s;
+        hoop_by_around[r][c] = share * t;
       }
     }
     const std::size_t from = j * 3 * width_;

@@ -22,10 +22,13 @@ struct StressFreeCap {
   S base_radius_mm = S(20);  ///< of the rim, > 0
   S height_mm = S(11);       ///< of its apex, > 0
   S mooney_share = S(0);     ///< C2 / (C1 + C2), in [0, 1]; 0: neo-Hookean
+  S uneven_x = S(0);         ///< share by which mu t grows from the axis to the rim along x,
+  S uneven_y = S(0);         ///< and along y; together in [0, 0.3]
 
   S radius_mm() const {
     return (base_radius_mm * base_radius_mm + height_mm * height_mm) / (S(2) * height_mm);
   }
+  bool is_uneven() const { return value(uneven_x) != 0 || value(uneven_y) != 0; }
   /// From the rim to the apex.
   S arc_mm() const {
     using std::atan;
@@ -41,9 +44,12 @@ struct StressFreeCap {
 /// Says which value is out of range; "" if none is.
 template <scalar S>
 std::string check(const StressFreeCap<S>& cap) {
+  const double uneven = std::hypot(static_cast<double>(value(cap.uneven_x)),
+                                   static_cast<double>(value(cap.uneven_y)));
   return check("StressFreeCap", {{"base_radius_mm", cap.base_radius_mm, positive},
                                  {"height_mm", cap.height_mm, positive},
-                                 {"mooney_share", cap.mooney_share, within(0, 1)}});
+                                 {"mooney_share", cap.mooney_share, within(0, 1)},
+                                 {"uneven_x and uneven_y together", uneven, within(0, 0.3)}});
 }
 
 /// How the membrane of a free pad leaves its rim.

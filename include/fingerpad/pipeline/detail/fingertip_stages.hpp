@@ -336,6 +336,7 @@ struct FingertipWrench {
   ReservedVector<fingerpad::Mark> marks;
   double dot_sd_px;
   int learnt = 0;
+  bool is_uneven;  // then the lattice is not drawn out about the axis
   bool is_tared = true;
 
   explicit FingertipWrench(const FingertipOptions& o)
@@ -343,7 +344,8 @@ struct FingertipWrench {
         camera(o.camera),
         rows(o.free_dots_mm.rows()),
         cols(o.free_dots_mm.cols()),
-        dot_sd_px(o.dot_sd_px) {
+        dot_sd_px(o.dot_sd_px),
+        is_uneven(o.wrench->cap.is_uneven()) {
     require("FingertipOptions",
             {{"dot_sd_px", o.dot_sd_px, positive}, {"side_dots", o.side_dots, within(0, 100000)}});
     dots.resize(static_cast<std::size_t>(rows * cols + o.side_dots));
@@ -410,7 +412,7 @@ struct FingertipWrench {
       }
     }
     if ((by_first.has_force() || is_first) && wrench.begin(pressure_mpa)) {
-      if (learnt == 0) {
+      if (learnt == 0 && !is_uneven) {
         find_axis();
       }
       learn();
