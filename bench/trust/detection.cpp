@@ -12,6 +12,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fingerpad/calibrate/contact.hpp"
@@ -30,8 +31,8 @@ namespace {
 constexpr int step = 3;
 constexpr double pressure_mpa = 0.004, infinite = std::numeric_limits<double>::infinity();
 
-/// A dent by a ball of this radius (infinite: a plate) that touches a disc of this radius: of a
-/// shallow membrane with the tension that its pressure gives it.
+/// A dent by a ball of this radius (infinite: a plate; negative: hollow) that touches a disc of
+/// this radius: of a shallow membrane with the tension that its pressure gives it.
 struct Dent {
   double touches_mm = 0, ball_mm = infinite;
 
@@ -82,16 +83,18 @@ class Finger {
         const auto fit = fit_contact_threshold(pad_.camera, frames, test.ring_px, test.directions,
                                                test.min_region_px);
         test.threshold_per_mm = fit.threshold_per_mm;
+        test.faint_per_mm = fit.faint_per_mm;
         median_per_mm_ = fit.median_per_mm;
       } catch (const parameter_error&) {  // all noise
       }
     }
     threshold_per_mm = test.threshold_per_mm;
+    faint_per_mm = test.faint_per_mm;
     region_.emplace(pad_.camera, pad_.rows, pad_.cols, test);
   }
 
   int window_px = 0;
-  double ring_px = 0, threshold_per_mm = 0;
+  double ring_px = 0, threshold_per_mm = 0, faint_per_mm = 0;
 
   /// Share of `frames` in which something seems to touch.
   double touched(const test::Frame<double>& frame, int frames) {
@@ -105,15 +108,19 @@ class Finger {
   }
   double touched_free(int frames) { return touched(free_, frames); }
 
-  /// The smallest dent that is found in 18 of 20 frames; its contact grows by a fifth each time.
-  Dent smallest(double ball_mm) {
-    Dent dent{0.5, ball_mm};
-    while (dent.touches_mm < 8 && touched(clean(dented(dent)), 20) < 0.9) {
-      dent.touches_mm *= 1.2;
+  /// Depth in mm and force in mN of the smallest dent that is found in 18 of 20 frames; its contact
+  /// grows by a fifth each time, up to 10 mm.
+  std::string smallest(double ball_mm) {
+    for (Dent dent{0.5, ball_mm}; dent.touches_mm < 10; dent.touches_mm *= 1.2) {
+      if (touched(clean(dented(dent)), 20) >= 0.9) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.2f; %.0f", dent.depth_mm(pad_),
+                      1000 * dent.force_n(pad_));
+        return text;
+      }
     }
-    return dent;
+    return "none";
   }
-  const test::Pad& pad() const { return pad_; }
 
  private:
   Image<double> dented(const Dent& dent) const {
@@ -158,20 +165,19 @@ class Finger {
 int main(int argc, char** argv) {
   const int frames = argc > 1 ? std::atoi(argv[1]) : 10000;
   std::printf(
-      "| brightness | noise, levels | window, ring, px | threshold, 1/mm | free frames with "
+      "| brightness | noise, levels | window, ring, px | thresholds, 1/mm | free frames with "
       "contact, "
-      "of %d | plate, mm; mN | ball of 5 mm, mm; mN |\n"
-      "| --: | --: | --: | --: | --: | --: | --: |\n",
+      "of %d | plate, mm; mN | ball of 5 mm, mm; mN | hollow by 30 mm, mm; mN |\n"
+      "| --: | --: | --: | --: | --: | --: | --: | --: |\n",
       frames);
   for (const double brightness : {57.0, 180.0}) {
     for (const double noise : {0.3, 0.5, 1.0, 2.0, 3.0}) {
       Finger finger(brightness, noise);
       const double wrong = finger.touched_free(frames);
-      const Dent plate = finger.smallest(infinite), ball = finger.smallest(5);
-      std::printf("| %g | %g | %d, %.0f | %.4f | %.0f | %.2f; %.0f | %.2f; %.0f |\n", brightness,
-                  noise, finger.window_px, finger.ring_px, finger.threshold_per_mm, wrong * frames,
-                  plate.depth_mm(finger.pad()), 1000 * plate.force_n(finger.pad()),
-                  ball.depth_mm(finger.pad()), 1000 * ball.force_n(finger.pad()));
+      const auto plate = finger.smallest(infinite), ball = finger.smallest(5);
+      std::printf("| %g | %g | %d, %.0f | %.4f, %.4f | %.0f | %s | %s | %s |\n", brightness, noise,
+                  finger.window_px, finger.ring_px, finger.threshold_per_mm, finger.faint_per_mm,
+                  wrong * frames, plate.c_str(), ball.c_str(), finger.smallest(-30).c_str());
       std::fflush(stdout);
     }
   }

@@ -52,6 +52,7 @@ void bind_contact(py::module_& module) {
   bind_options<ContactTest>(module, "ContactTest",
                             "The test for contact; see docs/contact/contact_region.md.")
       .def_readwrite("threshold_per_mm", &ContactTest::threshold_per_mm)
+      .def_readwrite("faint_per_mm", &ContactTest::faint_per_mm)
       .def_readwrite("free_apex_mm", &ContactTest::free_apex_mm)
       .def_readwrite("min_region_px", &ContactTest::min_region_px)
       .def_readwrite("places_edge", &ContactTest::places_edge)

@@ -141,6 +141,7 @@ TEST_CASE("calibration: the rules by definition", "[contact_region]") {
       CHECK(pad.region_per_mm == Approx(mean).epsilon(1e-4));
       CHECK(pad.noise_per_mm == Approx(std::sqrt(squares)).epsilon(1e-3));
       CHECK(pad.threshold_per_mm == Approx((std::min)(median / 2, low)).epsilon(2e-3));
+      CHECK(pad.faint_per_mm == Approx(count < 16 ? 0 : low).epsilon(2e-3));
     }
   }
 }
@@ -151,37 +152,40 @@ TEST_CASE("calibration: free frames seem touched as rarely as the threshold says
   // one in 10,000, by two frames of which one alone is in contact in a hundred
   const Index rows = 60, cols = 66;
   const auto camera = test::height_map(rows, cols, 0.16);
-  test::Random random(3);
-  const auto frame = [&] {
-    auto depth = test::depths_of<float>(camera, free_pad(0.05), rows, cols);
-    add_noise(depth, 0.04, random);
-    return depth;
-  };
-  std::vector<Image<float>> frames;
-  for (int k = 0; k < 300; ++k) {
-    frames.push_back(frame());
+  for (const double noise_mm : {0.04, 0.02}) {  // the threshold is set by the noise, by the level
+    test::Random random(3);
+    const auto frame = [&] {
+      auto depth = test::depths_of<float>(camera, free_pad(0.05), rows, cols);
+      add_noise(depth, noise_mm, random);
+      return depth;
+    };
+    std::vector<Image<float>> frames;
+    for (int k = 0; k < 300; ++k) {
+      frames.push_back(frame());
+    }
+    ContactTest test;
+    test.ring_px = 8;
+    test.min_region_px = 30;
+    const auto fit = [&](int running) {
+      return fit_contact_threshold(camera, frames, test.ring_px, test.directions,
+                                   test.min_region_px, running);
+    };
+    const auto alone = fit(1), two = fit(2);
+    test.threshold_per_mm = two.threshold_per_mm;
+    test.faint_per_mm = two.faint_per_mm;
+    CHECK(alone.faint_per_mm < test.faint_per_mm);
+    CHECK((test.threshold_per_mm < 0.024) == (noise_mm > 0.03));
+    CHECK((test.threshold_per_mm < test.faint_per_mm) == (noise_mm < 0.03));
+    Image<std::uint8_t> mask(rows, cols);
+    ContactRegion<> find(camera, rows, cols, test);
+    int touched = 0;
+    for (int k = 0; k < 2000; ++k) {
+      touched += find(frame(), mask).in_contact() ? 1 : 0;
+    }
+    CAPTURE(touched, alone.faint_per_mm, test.threshold_per_mm, test.faint_per_mm);
+    CHECK(touched <= 20);
+    CHECK(touched >= 1);
   }
-  ContactTest test;
-  test.ring_px = 8;
-  test.min_region_px = 30;
-  const auto fit = [&](int running) {
-    return fit_contact_threshold(camera, frames, test.ring_px, test.directions, test.min_region_px,
-                                 running)
-        .threshold_per_mm;
-  };
-  const double alone = fit(1);
-  test.threshold_per_mm = fit(2);
-  CHECK(alone < test.threshold_per_mm);
-  CHECK(test.threshold_per_mm < 0.024);  // set by the noise
-  Image<std::uint8_t> mask(rows, cols);
-  ContactRegion<> find(camera, rows, cols, test);
-  int touched = 0;
-  for (int k = 0; k < 2000; ++k) {
-    touched += find(frame(), mask).in_contact() ? 1 : 0;
-  }
-  CAPTURE(touched, alone, test.threshold_per_mm);
-  CHECK(touched <= 20);
-  CHECK(touched >= 1);
 }
 
 TEST_CASE("calibration: the smallest press that is found, and false contact", "[contact_region]") {

@@ -260,6 +260,35 @@ TEST_CASE("a hollow object of which noise leaves specks is one contact", "[conta
   CHECK(r.area_mm2 == Approx(film.area_mm2()).epsilon(0.05));
 }
 
+TEST_CASE("a hollow object that never falls to half of the level is found by a fainter threshold",
+          "[contact_region]") {
+  const Index size = pixels_for(6, 12, 0.16);
+  const auto camera = height_map(size, size, 0.16);
+  ContactTest test = with_gap(with_ring(12), 0);
+  ContactTest faint = test;
+  faint.faint_per_mm = 0.04;
+  for (const double hollow_per_mm : {0.0, 0.03, 0.033}) {
+    test::RoundContact contact;
+    contact.object_per_mm = hollow_per_mm;
+    const RoundFilm film(contact);
+    const auto depth = depths_of<float>(camera, film, size, size);
+    const Found plain = find(camera, depth, test), found = find(camera, depth, faint);
+    CAPTURE(hollow_per_mm);
+    CHECK(found.result.regions == 1);
+    if (hollow_per_mm > test.threshold_per_mm) {
+      CHECK_FALSE(plain.result.in_contact());
+      CHECK(found.result.area_mm2 == Approx(film.area_mm2()).epsilon(0.1));
+    } else {  // what half of the level finds stays as it is
+      CHECK(found.result.area_mm2 == plain.result.area_mm2);
+      CHECK(found.mask.cells == plain.mask.cells);
+    }
+  }
+  test::RoundContact none;
+  none.radius_mm = 0;
+  const auto free = depths_of<float>(camera, RoundFilm(none), size, size);
+  CHECK_FALSE(find(camera, free, faint).result.in_contact());
+}
+
 TEST_CASE("a hollow object takes the pressure that the membrane on it does not carry",
           "[contact_region]") {
   for (const double object_per_mm : {-0.02, 0.0, 0.01, 0.02}) {
@@ -541,6 +570,9 @@ TEST_CASE("bad parameters are refused by name", "[contact_region]") {
     test.threshold_per_mm = bad;
     CHECK(begins_with(with(test), "ContactTest: threshold_per_mm = "));
   }
+  test = {};
+  test.faint_per_mm = -0.01;
+  CHECK(with(test) == "ContactTest: faint_per_mm = -0.01, must be finite and >= 0");
   test = {};
   test.free_apex_mm = test::nan;
   CHECK(begins_with(with(test), "ContactTest: free_apex_mm = nan"));

@@ -65,7 +65,10 @@ Outcome camera_and_more() {
       {"pad", {{"base_radius_mm", 18}, {"apex_height_mm", 40.0 / 3}}},
       {"reference", {{"frame", "a.png"}, {"depth", "b.tiff"}}},
       {"contact",
-       {{"threshold_per_mm", 0.1 / 7}, {"ring_px", 100.0 / 3}, {"depth_noise_mm", 0.1 / 3}}},
+       {{"threshold_per_mm", 0.1 / 7},
+        {"faint_per_mm", 0.2 / 7},
+        {"ring_px", 100.0 / 3},
+        {"depth_noise_mm", 0.1 / 3}}},
       {"stick", {{"noise_px", 1.0 / 7}}},
       {"rim",
        {{"membrane_modulus_n_per_mm", 1.0 / 3},
@@ -128,6 +131,7 @@ TEST_CASE("A calibration that was saved is loaded bit for bit", "[calibrate]") {
   CHECK(sensor.pad.apex_height_mm == 40.0 / 3);
   REQUIRE(sensor.contact);
   CHECK(sensor.contact->threshold_per_mm == 0.1 / 7);
+  CHECK(sensor.contact->faint_per_mm == 0.2 / 7);
   CHECK(sensor.contact->ring_px == 100.0 / 3);
   CHECK(sensor.contact->depth_noise_mm == 0.1 / 3);
   CHECK(sensor.stick.noise == 1.0 / 7);

@@ -413,6 +413,7 @@ Outcome contact(const Path& recording, const Path& sensor_file, double pressure_
   found.depth_noise_mm = depth_noise_mm(depths_mm, free_mm, sensor.pad.apex_height_mm);
   fingerpad::ContactTest test;
   test.threshold_per_mm = pad.threshold_per_mm;
+  test.faint_per_mm = pad.faint_per_mm;
   test.ring_px = found.ring_px;
   const auto limit = fingerpad::detection_limit(sensor.camera, depths_mm, test, pad.median_per_mm,
                                                 sensor.pad.base_radius_mm);
@@ -438,6 +439,9 @@ Outcome contact(const Path& recording, const Path& sensor_file, double pressure_
   outcome.sections["contact"] = {{"threshold_per_mm", pad.threshold_per_mm},
                                  {"ring_px", found.ring_px},
                                  {"depth_noise_mm", *found.depth_noise_mm}};
+  if (pad.faint_per_mm > pad.threshold_per_mm) {
+    outcome.sections["contact"]["faint_per_mm"] = pad.faint_per_mm;
+  }
   outcome.sections["smoothing_px"] = *sensor.smoothing_px;
   Plot plot{"column on the middle row [px]", "depth of the free pad [mm]", {}};
   const int row = reference.rows / 2;

@@ -293,9 +293,13 @@ ShearLookUp read_shear(const Section& force) {
 Contact read_contact(const Section& root) {
   const Section section = root.section(
       "contact", {{"threshold_per_mm", "curvature below which a pixel is in contact, 1/mm"},
+                  {"faint_per_mm", "the same where nothing is below threshold_per_mm, 1/mm"},
                   {"ring_px", "radius of the ring of pixels from which the curvature is taken, px"},
                   {"depth_noise_mm", "standard deviation of a depth, mm"}});
   Contact contact{.threshold_per_mm = section.positive("threshold_per_mm")};
+  if (section.has("faint_per_mm")) {
+    contact.faint_per_mm = section.positive("faint_per_mm");
+  }
   if (section.has("ring_px")) {
     contact.ring_px = section.positive("ring_px");
   }

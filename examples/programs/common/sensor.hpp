@@ -69,7 +69,7 @@ struct ForceLookUp {
 
 /// What `calibrate contact` found in frames of the free pad.
 struct Contact {
-  double threshold_per_mm = 0;
+  double threshold_per_mm = 0, faint_per_mm = 0;
   double ring_px = fingerpad::ContactTest().ring_px;
   std::optional<double> depth_noise_mm = {};  ///< standard deviation of a smoothed depth
 };

@@ -33,6 +33,7 @@ template <scalar S = double>
 struct [[nodiscard]] ThresholdFit {
   const char* cause = nullptr;  ///< likely mistake
   S threshold_per_mm = S(0);    ///< for ContactTest, > 0
+  S faint_per_mm = S(0);        ///< for ContactTest: what noise alone allows; 0: not known
   S median_per_mm = S(0);       ///< of E over the pad
   /// Standard error of the median, from the scatter of the frames' medians; half of it is that of a
   /// threshold set by the level. NaN for a single frame.
@@ -151,6 +152,7 @@ ThresholdFit<T> fit_contact_threshold(const CameraType& camera,
         T(detail::rarely_below(static_cast<double>(value(count)), running)) * fit.noise_per_mm;
   }
   fit.threshold_per_mm = (std::min)(fit.median_per_mm / T(2), fit.region_per_mm - lowered);
+  fit.faint_per_mm = count < T(16) ? T(0) : fit.region_per_mm - lowered;
   expects(
       T(0) < fit.threshold_per_mm, owner, "threshold_per_mm", fit.threshold_per_mm,
       "> 0: the pad bulges too little for its noise; use a larger ring or smooth the depth more");

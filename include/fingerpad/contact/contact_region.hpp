@@ -38,6 +38,9 @@ struct ContactTest {
   /// delta in the sources, > 0. Half the curvature of the free pad is a good choice: 1/40 per mm
   /// for the published pad of 20 mm radius. calibrate/contact.hpp measures it.
   double threshold_per_mm = 0.025;
+  /// Counts instead where no region lies below the threshold: finds small and hollow objects, whose
+  /// curvature never falls to half. >= 0; 0, or less than the threshold: not used.
+  double faint_per_mm = 0;
   double free_apex_mm = 13;   ///< height of the free pad, from which contact depth counts; finite
   double ring_px = 25;        ///< radius of the ring of image/curvature.hpp, in [1, 1000]
   int directions = 18;        ///< of its sections, in [1, 360]; time grows with it
@@ -57,6 +60,7 @@ struct ContactTest {
 /// Says which value is out of range; "" if none is.
 inline std::string check(const ContactTest& test) {
   return check("ContactTest", {{"threshold_per_mm", test.threshold_per_mm, positive},
+                               {"faint_per_mm", test.faint_per_mm, not_negative},
                                {"free_apex_mm", test.free_apex_mm, finite_number},
                                {"ring_px", test.ring_px, within(1, 1000)},
                                {"directions", test.directions, within(1, 360)},
@@ -165,29 +169,11 @@ class ContactRegion {
     const auto marks = regions_.marks();
     result.unknown_px =
         *(test_.places_edge ? curvature_(depth, statistic, raw) : curvature_(depth, statistic));
-    for (Index i = 0; i < image_.rows; ++i) {
-      detail::mark_below(S(test_.threshold_per_mm), statistic.row(i), image_.cols, marks.row(i));
+    double pressed_px = find_below(test_.threshold_per_mm, depth, result);
+    if (result.regions == 0 && test_.faint_per_mm > test_.threshold_per_mm) {
+      result.area_sd_mm2 = 0;
+      pressed_px = find_below(test_.faint_per_mm, depth, result);
     }
-    if (test_.places_edge && regions_.next_seed(0) < image_.size()) {
-      find_free_plane();
-      detail::mean_of_nine(raw, spread_rows_, spread_cols_, image_.view(mean_.data()));
-    }
-    const auto keep = [this](const detail::Regions::Region& region) {
-      return region.pixels() >= test_.min_region_px;
-    };
-    double pressed_px = 0;
-    result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
-      if (test_.places_edge) {
-        const Edge edge = place_edge(depth, region);
-        result.area_sd_mm2 += edge.area_sd_mm2;
-        pressed_px += edge.pressure_share * static_cast<double>(region.pixels());
-      } else {
-        result.area_sd_mm2 +=
-            perimeter_mm(region, pitch_mm_) * test_.ring_px * pitch_mm_ / std::numbers::sqrt3;
-        pressed_px += static_cast<double>(region.pixels());
-      }
-      result.contact_px += region.pixels();
-    });
     write(marks, to);
     measure(marks, depth, result);
     if (result.in_contact()) {
@@ -222,6 +208,38 @@ class ContactRegion {
   template <class G>
   bool has_size(const G& g) const {
     return g.rows() == image_.rows && g.cols() == image_.cols;
+  }
+
+  /// Finds the regions whose curvature is below a threshold; returns their pixels, each by the
+  /// share of the pressure that the object takes there.
+  template <class View>
+  double find_below(double threshold_per_mm, const View& depth, ContactResult& result) {
+    const auto marks = regions_.marks();
+    for (Index i = 0; i < image_.rows; ++i) {
+      detail::mark_below(S(threshold_per_mm), statistic().row(i), image_.cols, marks.row(i));
+    }
+    if (test_.places_edge && regions_.next_seed(0) < image_.size()) {
+      find_free_plane();
+      detail::mean_of_nine(image_.view(raw_.data()), spread_rows_, spread_cols_,
+                           image_.view(mean_.data()));
+    }
+    const auto keep = [this](const detail::Regions::Region& region) {
+      return region.pixels() >= test_.min_region_px;
+    };
+    double pressed_px = 0;
+    result.regions = regions_.for_each(keep, [&](detail::Regions::Region& region) {
+      if (test_.places_edge) {
+        const Edge edge = place_edge(depth, region);
+        result.area_sd_mm2 += edge.area_sd_mm2;
+        pressed_px += edge.pressure_share * static_cast<double>(region.pixels());
+      } else {
+        result.area_sd_mm2 +=
+            perimeter_mm(region, pitch_mm_) * test_.ring_px * pitch_mm_ / std::numbers::sqrt3;
+        pressed_px += static_cast<double>(region.pixels());
+      }
+      result.contact_px += region.pixels();
+    });
+    return pressed_px;
   }
 
   template <class Cell>

@@ -71,6 +71,7 @@ FingertipSettings fingertip_settings(const Recording& recording, const DotGrid& 
   options.smoothing_px = sensor.smoothing_px.value_or(options.smoothing_px);
   if (sensor.contact) {
     options.contact.threshold_per_mm = sensor.contact->threshold_per_mm;
+    options.contact.faint_per_mm = sensor.contact->faint_per_mm;
     options.contact.ring_px = sensor.contact->ring_px;
     // at least the default: the free pad does not show the error at the edge of a contact
     options.dot_depth_noise_mm =
