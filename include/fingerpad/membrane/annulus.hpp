@@ -77,6 +77,7 @@ class Annulus {
         basis.push_back(sin(S(static_cast<double>(m)) * phi));
       }
       basis_.push_back(basis);
+      growth_.push_back((cap.uneven_x * cos(phi) + cap.uneven_y * sin(phi)) / cap.base_radius_mm);
     }
   }
 
@@ -291,11 +292,8 @@ class Annulus {
     }
   }
 
-  /// mu t over that of the axis.
-  S thickness(std::size_t j, const S& rho) const {
-    return S(1) + rho / cap_.base_radius_mm *
-                      (cap_.uneven_x * basis_[j][1] + cap_.uneven_y * basis_[j][2]);
-  }
+  /// mu t of a meridian over that of the axis.
+  S thickness(std::size_t j, const S& rho) const { return S(1) + rho * growth_[j]; }
 
   /// The circle where the march begins.
   void begin(const std::vector<S>& q) {
@@ -356,15 +354,15 @@ class Annulus {
 
   /// Rates by the arc: `along` of x, y_rate_ of y = rho_0 A.
   void rates(const Field& x, const Field& y, const S& arc, Field& along) {
-    const S m = cap_.mooney_share, inverse = S(1) / cap_.rho_mm(arc), load = load_;
+    const S m = cap_.mooney_share, rho = cap_.rho_mm(arc), inverse = S(1) / rho, load = load_;
     change_around(x, around_);
     for (std::size_t j = 0; j < n_; ++j) {
       const Point3<S> b = inverse * column(around_, j, value_);
-      const S share = thickness(j, cap_.rho_mm(arc));
-      const Point3<S> pull = inverse / share * column(y, j, value_);
+      const S share = thickness(j, rho), of_pull = inverse / share;
+      const Point3<S> pull = of_pull * column(y, j, value_);
       const Point3<S> t = detail::membrane::stretch_of_pull(pull, b, m, across_[j]);
       if (options_.slopes) {
-        slopes_of_rates(j, t, b, inverse, share, y, along);
+        slopes_of_rates(j, t, b, inverse, of_pull, share, y, along);
       }
       put(along, j, value_, t);
       put(hoop_, j, value_, share * rubber_pull(b, t, m));
@@ -398,6 +396,7 @@ class Annulus {
                        const Point3<S>& along,
                        const Point3<S>& b,
                        const S& inverse,
+                       const S& of_pull,
                        const S& share,
                        const Field& y,
                        Field& along_of_x) {
@@ -413,7 +412,7 @@ class Annulus {
         for (std::size_t k = 0; k < 3; ++k) {
           s = s + solve[r][k] * across.by_other[k][c];
         }
-        by_y[r][c] = inverse / share * solve[r][c];
+        by_y[r][c] = of_pull * solve[r][c];
         by_around[r][c] = -(inverse * s);
       }
     }
@@ -447,7 +446,7 @@ class Annulus {
   AnnulusOptions options_;
   std::size_t n_ = 0, terms_ = 0, offset_terms_ = 0, value_ = 0, width_ = 0, steps_ = 0;
   S step_mm_ = S(0), load_ = S(0);
-  std::vector<S> across_;
+  std::vector<S> across_, growth_;  // growth of mu t per mm from the axis
   std::vector<std::vector<S>> basis_;
   std::vector<Field> x_, along_;  // at each circle
   Field y_, around_, hoop_, x_at_, y_at_, x_sum_, y_sum_, y_rate_, rim_around_, rim_pull_;
