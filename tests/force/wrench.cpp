@@ -278,7 +278,7 @@ TEST_CASE("wrench: without a gauge the dots tell the pressure", "[wrench]") {
   for (const RimScene& s : rim_scenes()) {
     auto options = SeenRim::options_of(s, true);
     options.pressure_sd_share = 1;
-    for (std::size_t run = 0; run < 8 * (s.frames.size() - 1); ++run) {
+    for (std::size_t run = 0; run < 3 * (s.frames.size() - 1); ++run) {
       const std::size_t k = 1 + run % (s.frames.size() - 1);
       SeenRim rim(s, options, 0.02, run);
       rim.show(k);

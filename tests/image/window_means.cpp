@@ -149,18 +149,32 @@ TEMPLATE_TEST_CASE("a block has the means of a million pixels one by one",
     }
   }
   const auto means = means_of<Pixel, S>(frame, inside, window, {-2 * top, 2 * top});
+  // Sums over all pixels above and to the left, modulo 2^64: their differences over a window are
+  // exact.
+  const auto sums_of = [&](const auto& value) {
+    Image<std::uint64_t> sums(rows + 1, cols + 1);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < cols; ++j) {
+        sums(i + 1, j + 1) = static_cast<std::uint64_t>(std::int64_t(inside(i, j)) * value(i, j)) +
+                             sums(i, j + 1) + sums(i + 1, j) - sums(i, j);
+      }
+    }
+    return sums;
+  };
+  const auto reds = sums_of([&](Index i, Index j) { return std::int64_t(frame.red(i, j)); });
+  const auto greens = sums_of([&](Index i, Index j) { return std::int64_t(frame.green(i, j)); });
+  const auto counts = sums_of([](Index, Index) { return std::int64_t(1); });
   Index missing = 0;
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < cols; ++j) {
       for (const Index r : {Index(window / 2), Index(window / 2 + 1)}) {
-        std::int64_t red = 0, green = 0, count = 0;
-        for (Index p = (std::max)(i - r, Index(0)); p <= (std::min)(i + r, rows - 1); ++p) {
-          for (Index q = (std::max)(j - r, Index(0)); q <= (std::min)(j + r, cols - 1); ++q) {
-            red += inside(p, q) * frame.red(p, q);
-            green += inside(p, q) * frame.green(p, q);
-            count += inside(p, q);
-          }
-        }
+        const Index top_row = (std::max)(i - r, Index(0)), left = (std::max)(j - r, Index(0));
+        const Index below = (std::min)(i + r + 1, rows), right = (std::min)(j + r + 1, cols);
+        const auto within = [&](const Image<std::uint64_t>& sums) {
+          return static_cast<std::int64_t>(sums(below, right) - sums(top_row, right) -
+                                           sums(below, left) + sums(top_row, left));
+        };
+        const std::int64_t red = within(reds), green = within(greens), count = within(counts);
         missing += count == 0 ? 1 : 0;
         const auto law = [&](std::int64_t sum) {
           return count == 0 ? std::numeric_limits<S>::quiet_NaN() : S(sum) / S(count);
