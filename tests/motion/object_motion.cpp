@@ -236,9 +236,21 @@ TEST_CASE("object motion: standard deviations of dots at rest, by hand") {
   const Flags all(4, 5, 1), none(4, 5, 0);
   ObjectMotion<> motion(4, 5);
   (void)motion(dots, all, none, noise_mm);
-  const auto r = motion(dots, all, none, noise_mm);
-  CHECK(r.rotation_sd_rad == Approx(noise_mm * std::sqrt(2 * 16 / spread_sq)));
+  auto r = motion(dots, all, none, noise_mm);
+  // the dots fit; 0.009 mm of their depth may be the window's
+  CHECK(r.rotation_sd_rad == Approx(0.009 * std::sqrt(2 * 16 / spread_sq)));
   CHECK(r.position_sd_mm == Approx(noise_mm * std::sqrt(2 * 4 / 20.0)));
+  // up and down, alike on both sides of the middle: no rotation fits, and six of 60 numbers are
+  for (Index i = 0; i < 4; ++i) {
+    for (Index j = 0; j < 5; ++j) {
+      dots(i, j).z += (i == 0 || i == 3 ? 1 : -1) * 0.03;
+    }
+  }
+  r = motion(dots, all, none, noise_mm);
+  const double wider_sq = spread_sq + 20 * square(0.03);
+  CHECK(r.residual_rms_mm == Approx(0.03));
+  CHECK(r.rotation_sd_rad == Approx(std::hypot(0.03 * std::sqrt(60 / 54.0), 0.009) *
+                                    std::sqrt(16 / spread_sq + 16 / wider_sq)));
 }
 
 TEST_CASE("object motion: a pose whose residual exceeds the noise is doubtful") {

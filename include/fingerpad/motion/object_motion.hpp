@@ -78,8 +78,9 @@ struct [[nodiscard]] ObjectMotionResult {
   /// Standard deviations of the position, as the length of its error, and of the angle between
   /// found and true rotation, since the object began; NaN without depth_noise_mm. The noise of a
   /// dot, or the residual if that is larger, is common to about four dots, as far as depth is
-  /// smoothed; what dots that leave take with them adds up, and the further the position lies from
-  /// the dots that touch now, the more the rotation moves it.
+  /// smoothed; the rotation's is the residual and what smoothing does at a contact's edge. What
+  /// dots that leave take with them adds up, and the further the position lies from the dots that
+  /// touch now, the more the rotation moves it.
   S position_sd_mm = not_a_number<S>();
   S rotation_sd_rad = not_a_number<S>();
 
@@ -225,7 +226,9 @@ class ObjectMotion {
     shift_memory_ = last_.begun ? shift : shift_memory_ + renewed * shift;
     const S noise =
         S(depth_noise_mm) < last_.residual_rms_mm ? last_.residual_rms_mm : S(depth_noise_mm);
-    last_.rotation_sd_rad = last_.begun ? S(0) : noise * sqrt(memory_ + tilt);
+    const S seen_sq = square(last_.residual_rms_mm) * count / (count - S(2));  // six are fitted
+    const S tilt_sq = seen_sq + S(square(bias_mm));
+    last_.rotation_sd_rad = last_.begun ? S(0) : sqrt(tilt_sq * (memory_ + tilt));
     const S lever_sq = squared_norm(last_.position_mm - middle);
     last_.position_sd_mm = sqrt(square(noise) * (shift_memory_ + shift) +
                                 lever_sq / S(2) * square(last_.rotation_sd_rad));
@@ -322,6 +325,10 @@ class ObjectMotion {
       map_[k] = {back(frame_.found[k]), S(1) / S(2)};
     }
   }
+
+  /// What smoothing moves the depth by, at most, inside the edge of a plate or a ball; a rigid
+  /// motion follows it, so that the residual does not show it.
+  static constexpr double bias_mm = 0.009;
 
   detail::FrameOfDots<S> frame_;
   detail::Bordered<Entry> map_;  ///< by the cells of the frame
