@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,9 +67,8 @@ struct [[nodiscard]] RimFit {
 
 namespace cause {
 inline constexpr char one_pressure[] =
-    "the pressures hardly differ, so mu t depends on the stress-free height, and where it is "
-    "larger "
-    "does not show: record several, or use a weight for mu t";
+    "the pressures hardly differ, so mu t depends on the stress-free height, and an uneven "
+    "membrane does not show: record several, or use a weight for mu t";
 inline constexpr char no_such_cap[] =
     "the apex heights are not those of an inflated cap: check radius, rubber and units";
 inline constexpr char modulus_uncertain[] =
