@@ -156,16 +156,20 @@ TEST_CASE("rim calibration: free pictures show where the membrane is thicker", "
       REQUIRE(fit.ok());
       return along_and_across(fit.share);
     };
-    const auto exact = found(uneven_fit(s, 0, 4, 1));
+    const UnevenFit without_noise = uneven_fit(s, 0, 4, 1);
+    const auto exact = found(without_noise);
     CAPTURE(s.scene.name, exact.x, exact.y);
     // what grows is told to 3 %; what stays is taken for more that grows
     CHECK(std::fabs(exact.x - s.share) < (s.grows ? 0.03 * s.share + 1e-4 : 0.15 * s.share));
     CHECK(std::fabs(exact.y) < 5e-4);
+    if (&s != &test::uneven_scenes()[1]) {
+      continue;
+    }
     const auto beside = uneven_fit(s, 0, 4, 1, {2, -1});
     CHECK(norm(found(beside) - exact) < 2e-3);
-    CHECK(norm(beside.axis_px - uneven_fit(s, 0, 4, 1).axis_px - Point2<double>{2, -1}) < 0.05);
+    CHECK(norm(beside.axis_px - without_noise.axis_px - Point2<double>{2, -1}) < 0.05);
     double sum_sq = 0, sd = 0;
-    constexpr int draws = 10;
+    constexpr int draws = 4;
     for (int draw = 0; draw < draws; ++draw) {  // 16 frames with .06 px at each pressure
       const auto fit = uneven_fit(s, 0.015, 4, static_cast<std::uint64_t>(draw));
       sum_sq += squared_norm(found(fit) - exact) / (2 * draws);

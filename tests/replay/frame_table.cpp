@@ -46,3 +46,13 @@ TEST_CASE("frames.csv: the stick ratio is that of dots and friction together") {
   row.touch.slip.update = RatioUpdate::missing;
   CHECK(written(row, "slip_status") == "fallsback");
 }
+
+TEST_CASE("frames.csv: a force by look-up is no surer than the contact that it is looked up by") {
+  replay::FrameRow row;
+  row.has_depth = row.has_curves = true;
+  row.touch.contact.status = FrameStatus::ok;
+  row.touch.normal.status = ForceStatus::measured;
+  CHECK(written(row, "look_up_status") == "ok");
+  row.touch.contact_in_doubt = true;
+  CHECK(written(row, "look_up_status") == "contactindoubt");  // read without blanks
+}

@@ -40,12 +40,12 @@ Text contact_status(const Row& row) {
 
 Text look_up_status(const Row& row) {
   const auto status = row.touch.normal.status;
-  return !row.has_curves                              ? ""
-         : !row.touch.contact.ok()                    ? "contact in doubt"
-         : row.picture_fault != nullptr               ? row.picture_fault
-         : row.touch.light_in_doubt()                 ? "light has changed"
-         : status == fingerpad::ForceStatus::measured ? "ok"
-                                                      : name_of(status);
+  return !row.has_curves                                         ? ""
+         : !row.touch.contact.ok() || row.touch.contact_in_doubt ? "contact in doubt"
+         : row.picture_fault != nullptr                          ? row.picture_fault
+         : row.touch.light_in_doubt()                            ? "light has changed"
+         : status == fingerpad::ForceStatus::measured            ? "ok"
+                                                                 : name_of(status);
 }
 
 /// Whether there is an object: a frame without a pose keeps it.
