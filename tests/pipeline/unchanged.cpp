@@ -282,8 +282,7 @@ TEST_CASE("unchanged: contact, surface, flat area and neighbouring light", "[unc
 }
 
 TEST_CASE("unchanged: the whole chain", "[unchanged]") {
-  const auto [sampling, expected] =
-      GENERATE(table<int, double>({{1, 129973.91}, {3, 129468.317}}));
+  const auto [sampling, expected] = GENERATE(table<int, double>({{1, 129973.91}, {3, 129468.317}}));
   CAPTURE(sampling);
   const chain::PressedFrames pad(240, 320, 5);
   auto options = chain::in_samples(pad.options(), sampling);
