@@ -482,8 +482,8 @@ class Judge {
 
 void run(const Scene& scene, const Frames& frames, const Condition& of) {
   const char* const draw = std::getenv("DRAW");
-  std::uint64_t seed = 23 + (draw ? 1000003 * std::strtoull(draw, nullptr, 10)
-                                  : 0);  // each condition of each scene has noise of its own
+  // Each condition of each scene has noise of its own.
+  std::uint64_t seed = 23 + (draw ? 1000003 * std::strtoull(draw, nullptr, 10) : 0);
   for (const char letter : of.name + scene.name) {
     seed = 31 * seed + static_cast<std::uint64_t>(letter);
   }

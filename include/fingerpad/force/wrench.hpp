@@ -318,7 +318,9 @@ class Wrench {
   /// side: no force and no moment, and it is whole further inward, which the second harmonic of its
   /// circles in plan would not be.
   bool lean(const FreeRim<double>& rim, double load) {
-    Annulus<double>& pad = *uneven_;  // the thick side toward x
+    // The thick side is toward x. Parameters 0 to 2 are harmonics inward (1, cos, sin), 3 to 5
+    // around, 6 to 8 up.
+    Annulus<double>& pad = *uneven_;
     std::fill(leaning_.begin(), leaning_.end(), 0.0);
     leaning_[0] = rim.stretch * std::cos(rim.slope_rad);
     leaning_[6] = rim.stretch * std::sin(rim.slope_rad);
@@ -630,7 +632,7 @@ class Wrench {
   std::vector<double> prior_, weight_;  // of the parameters, and where sd_px is not the noise
   FreeRadii free_radius_mm_ = {}, arc_by_load_mm_ = {};  // the latter with ln of the load
   FreeRadii off_outward_mm_ = {}, off_around_mm_ = {};   // of an uneven membrane, where it is thick
-  std::optional<Annulus<double>> uneven_;                // of the whole free pad
+  std::optional<Annulus<double>> uneven_;                // of the free pad, past the reach
   std::vector<double> leaning_;                          // its parameters
   detail::ReservedVector<Seen> places_;
   Eigen::MatrixXd of_load_;  // by parameters
